@@ -12,7 +12,11 @@ layout(set = 1, binding = 0, rgba32f) readonly uniform image2D radiance;
 layout(set = 1, binding = 1, rgba32f) readonly uniform image2D accumulated;
 layout(set = 1, binding = 2, std140) uniform ExposureBlock { ExposureState exposure; };
 layout(set = 1, binding = 3, rgba8) writeonly uniform image2D shown;
-layout(push_constant) uniform Constants { float mean_share; };
+layout(push_constant) uniform Constants {
+  uvec2 shown_size;  // of the frame that is shown, pixels
+  uvec2 drawn;       // of `radiance`, whose nearest pixels are shown
+  float mean_share;
+};
 
 vec3 tone_map(vec3 color) {
   switch (int(frame.tone_map_curve)) {
@@ -25,8 +29,9 @@ vec3 tone_map(vec3 color) {
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (outside_frame(pixel)) return;
-  vec3 color = mean_share < 1.0 ? imageLoad(radiance, pixel).rgb : vec3(0.0);
+  if (any(greaterThanEqual(uvec2(pixel), shown_size))) return;
+  ivec2 nearest = ivec2((2u * uvec2(pixel) + 1u) * drawn / (2u * shown_size));
+  vec3 color = mean_share < 1.0 ? imageLoad(radiance, nearest).rgb : vec3(0.0);
   if (mean_share > 0.0) color = mix(color, imageLoad(accumulated, pixel).rgb, mean_share);
   color = max(color, 0.0) * exposure.factor;
   vec3 encoded = srgb_encode(tone_map(color));

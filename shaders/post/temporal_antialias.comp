@@ -5,6 +5,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 // within mean and deviation of the 3x3 neighbours in YCgCo (Salvi 2016). A jittered sample of a
 // pixel is one of the pixel's whole area; it is not filtered again. What blurs is reading the
 // history between its texels, frame after frame: a cubic steeper than Catmull-Rom's makes up for it.
+// Of a frame that is drawn smaller than it is shown, each pixel takes the nearest sample, by its
+// distance from the pixel's centre: the structure of Snapdragon GSR 2.
 #include "lib/frame.glsl"
 #include "shared/exposure.h"
 
@@ -12,8 +14,9 @@ layout(set = 1, binding = 0, rgba32f) readonly uniform image2D hdr;
 layout(set = 1, binding = 1, rgba32f) readonly uniform image2D motion;
 layout(set = 1, binding = 2) uniform sampler2D history;
 layout(set = 1, binding = 3, std140) uniform ExposureBlock { ExposureState exposure; };
-layout(set = 1, binding = 4, rgba32f) writeonly uniform image2D resolved;  // a: frames
+layout(set = 1, binding = 4, rgba32f) writeonly uniform image2D resolved;  // a: samples
 layout(push_constant) uniform Constants {
+  uvec2 shown;         // size of the history and the result, pixels
   float blend;         // least weight of the new frame
   float clip;          // half width of the box in standard deviations
   float anti_flicker;  // 1: on
@@ -31,6 +34,10 @@ const float cubic_slope = -0.75;
 // in steps of 1 / off_texel_slope pixels.
 const float most_still = 4.0;
 const float off_texel_slope = 8.0;
+// Fitted by similarity at 0.5 to 0.8 of the size: how fast a sample's weight falls with its distance
+// in pixels, and how much wider the box is about neighbours that lie farther apart.
+const float distance_falloff = 2.0;
+const float scaled_box = 1.3;
 
 vec3 ycgco_from_rgb(vec3 c) {
   return vec3(dot(c, vec3(0.25, 0.5, 0.25)), dot(c, vec3(-0.25, 0.5, -0.25)),
@@ -93,14 +100,14 @@ vec4 cubic_weights(float f) {
 
 /// How far from a texel the history is read, 0 (there) to 0.5, along the farther axis.
 float off_texel(vec2 uv) {
-  vec2 off = abs(fract(uv * vec2(frame.extent)) - 0.5);
+  vec2 off = abs(fract(uv * vec2(shown)) - 0.5);
   return max(off.x, off.y);
 }
 
 /// May overshoot; a: of the nearest texel.
 vec4 sample_history(vec2 uv) {
-  vec2 position = uv * vec2(frame.extent) - 0.5;
-  ivec2 first = ivec2(floor(position)), last = ivec2(frame.extent) - 1;
+  vec2 position = uv * vec2(shown) - 0.5;
+  ivec2 first = ivec2(floor(position)), last = ivec2(shown) - 1;
   vec2 f = position - vec2(first);
   vec4 across = cubic_weights(f.x), down = cubic_weights(f.y);
   vec3 sum = vec3(0.0);
@@ -116,17 +123,35 @@ vec4 sample_history(vec2 uv) {
   return vec4(max(sum, 0.0), texelFetch(history, nearest, 0).a);
 }
 
+struct Sample {
+  ivec2 pixel;   // that was drawn
+  float weight;  // 1 at the centre of the pixel that is shown
+};
+
+/// The nearest sample.
+Sample nearest_sample(ivec2 pixel) {
+  if (shown == frame.extent) return Sample(pixel, 1.0);
+  vec2 scale = vec2(frame.extent) / vec2(shown);
+  vec2 center = (vec2(pixel) + 0.5) * scale;
+  vec2 jitter = -0.5 * frame.unproject.zw / frame.unproject.xy * vec2(frame.extent);
+  ivec2 at = clamp(ivec2(floor(center + jitter)), ivec2(0), ivec2(frame.extent) - 1);
+  vec2 off = (vec2(at) + 0.5 - jitter - center) / scale;
+  float far = distance_falloff * dot(off, off);
+  return Sample(at, 1.0 / (1.0 + far + 0.5 * far * far));
+}
+
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (outside_frame(pixel)) return;
-  vec4 center = imageLoad(hdr, pixel);
-  vec2 uv = (vec2(pixel) + 0.5) / vec2(frame.extent);
-  vec2 before = uv + edge_motion(pixel);
+  if (any(greaterThanEqual(uvec2(pixel), shown))) return;
+  Sample found = nearest_sample(pixel);
+  vec3 radiance = imageLoad(hdr, found.pixel).rgb;
+  vec2 uv = (vec2(pixel) + 0.5) / vec2(shown);
+  vec2 before = uv + edge_motion(found.pixel);
   // What was outside the previous frame has no history.
   bool known = frame.history_invalid == 0u && all(greaterThanEqual(before, vec2(0.0))) &&
                all(lessThanEqual(before, vec2(1.0)));
   if (!known) {
-    imageStore(resolved, pixel, vec4(center.rgb, 1.0));
+    imageStore(resolved, pixel, vec4(radiance, found.weight));
     return;
   }
 
@@ -134,26 +159,28 @@ void main() {
   vec3 nearby[9];
   vec3 mean = vec3(0.0);
   for (int i = 0; i < 9; ++i) {
-    ivec2 at = clamp(pixel + ivec2(i % 3, i / 3) - 1, ivec2(0), last);
+    ivec2 at = clamp(found.pixel + ivec2(i % 3, i / 3) - 1, ivec2(0), last);
     nearby[i] = compressed(imageLoad(hdr, at).rgb);
     mean += nearby[i] / 9.0;
   }
   // About the mean, not as a difference of squares: compressed highlights hardly differ.
   vec3 variance = vec3(0.0);
   for (int i = 0; i < 9; ++i) variance += (nearby[i] - mean) * (nearby[i] - mean) / 9.0;
-  vec3 half_extent = clip * sqrt(variance);
+  vec3 half_extent = (shown == frame.extent ? clip : scaled_box * clip) * sqrt(variance);
   vec3 low = mean - half_extent;
   vec3 high = mean + half_extent;
 
-  vec4 found = sample_history(before);
-  vec3 old = compressed(found.rgb);
+  vec4 history_before = sample_history(before);
+  vec3 old = compressed(history_before.rgb);
   float still = max(1.0 - off_texel_slope * off_texel(before), 0.0);
-  float frames = min(found.a + 1.0, mix(1.0, most_still, still) / blend);
-  float weight = 1.0 / frames;
+  vec2 scale = vec2(frame.extent) / vec2(shown);
+  float most = (1.0 / blend - 1.0) * mix(1.0, most_still, still) * scale.x * scale.y;
+  float samples = min(history_before.a, most) + found.weight;
+  float weight = found.weight / samples;
   if (anti_flicker > 0.0) {
     float margin = min(abs(old.x - low.x), abs(high.x - old.x));
     weight *= max(margin / max(margin + high.x - low.x, 1e-6), min_anti_flicker);
   }
-  vec3 blended = mix(clamp(old, low, high), compressed(center.rgb), weight);
-  imageStore(resolved, pixel, vec4(expanded(blended), frames));
+  vec3 blended = mix(clamp(old, low, high), compressed(radiance), weight);
+  imageStore(resolved, pixel, vec4(expanded(blended), samples));
 }

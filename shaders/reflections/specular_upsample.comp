@@ -59,7 +59,7 @@ vec4 gathered(SurfaceMaterial m, ivec2 pixel, float view_z) {
   vec3 position = world_position(pixel, view_z);
   ivec2 cell = pixel / 2;
   ivec2 aside = (pixel & 1) * 2 - 1;
-  ivec2 last = imageSize(half_radiance) - 1;
+  ivec2 last = (ivec2(frame.extent) + 1) / 2 - 1;
   vec4 sum = vec4(0.0);
   float total = 0.0;
   for (int i = 0; i < 4; ++i) {

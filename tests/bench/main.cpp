@@ -33,6 +33,7 @@ struct Options {
   std::string tracer = "auto";
   int frames = 16;
   int warm_up = 24;  // until histories are long and most pixels leave samples out
+  float draw_scale = 1.0f;
   bool still = false;
   bool shaders = false;
 };
@@ -187,6 +188,7 @@ nlohmann::json measure(render::Engine& engine, RecordingTracer& tracer, const sc
     engine.parts().host_kernels = true;
   }
   Run run(engine, resources, extent, settings);
+  run.renderer.set_draw_scale(options.draw_scale);
   const scene::Camera camera = first_camera(scene, extent);
   for (int i = 0; i < options.warm_up + options.frames; ++i) {
     for (Run* each : {&run, shaders ? &*shaders : nullptr}) {
@@ -263,6 +265,9 @@ int main(int argc, char** argv) {
   app.add_option("--size", options.sizes, "frame sizes, such as 640x360")->expected(1, -1);
   app.add_option("--frames", options.frames, "measured frames")->check(CLI::PositiveNumber);
   app.add_option("--warm-up", options.warm_up, "frames before them")->check(CLI::NonNegativeNumber);
+  app.add_option("--draw-scale", options.draw_scale,
+                 "fraction of width and height that frames are drawn at and reconstructed from")
+      ->check(CLI::Range(0.1f, 1.0f));
   app.add_option("--set", options.settings, "path=value, as `heliograph render` takes it");
   app.add_option("--preset", options.preset, "a preset, as `heliograph render` takes it");
   app.add_option("--environment", options.environment, "the sky; otherwise white");

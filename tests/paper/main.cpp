@@ -60,6 +60,7 @@ struct Options {
   int frames = 60;
   int samples = 512;
   int texture_size = 256;
+  float draw_scale = 1.0f;
   float frame_rate = 60.0f;
   std::string ground_truth = "reference";
   std::string ground_truth_folder;
@@ -70,7 +71,7 @@ struct Options {
   bool without_timings = false;
 
   StageOptions stage() const {
-    StageOptions stage{.texture_size = texture_size};
+    StageOptions stage{.texture_size = texture_size, .draw_scale = draw_scale};
     char end = 0;
     if (std::sscanf(size.c_str(), "%ux%u%c", &stage.width, &stage.height, &end) != 2) {
       throw std::invalid_argument("--size " + size + " must look like 640x360");
@@ -231,6 +232,9 @@ void add_options(CLI::App& app, Options& options) {
   app.add_option("--texture-size", options.texture_size, "Width of the scenes' textures")
       ->check(CLI::Range(16, 4096))
       ->capture_default_str();
+  app.add_option("--draw-scale", options.draw_scale,
+                 "Fraction of width and height that frames are drawn at and reconstructed from")
+      ->check(CLI::Range(0.1f, 1.0f));
   app.add_option("--truth", options.ground_truth,
                  "The path tracer, or the hybrid's own samples averaged")
       ->check(CLI::IsMember({"reference", "accumulated"}))

@@ -63,6 +63,7 @@ void Stage::show_moment(render::Renderer& renderer, const Shot& shot, int frame)
 
 Played Stage::play(const protocol::Settings& settings, const Shot& shot) const {
   const auto renderer = start(settings, shot);
+  renderer->set_draw_scale(options_.draw_scale);
   const double pixels = double(options_.width) * double(options_.height);
   Played played;
   for (int i = 0; i < shot.frames; ++i) {
@@ -80,6 +81,7 @@ Played Stage::play(const protocol::Settings& settings, const Shot& shot) const {
 
 std::vector<render::Frame> Stage::time(const protocol::Settings& settings, const Shot& shot) const {
   const auto renderer = start(settings, shot);
+  renderer->set_draw_scale(options_.draw_scale);
   std::vector<render::Frame> frames;
   for (int i = 0; i < shot.frames; ++i) {
     show_moment(*renderer, shot, i);

@@ -17,6 +17,7 @@ struct StageOptions {
   std::uint32_t width = 320;
   std::uint32_t height = 180;
   int texture_size = 128;
+  float draw_scale = 1.0f;  // of what is compared; ground truth is of full size
 };
 
 /// A run of frames in lockstep: frame i shows the clip at i * frame_seconds.

@@ -175,7 +175,8 @@ TEST(VisibleNormals, WeightIsG2OverG1) {
 
 /// Reads the table that composition demodulates by.
 glm::vec2 split_sum(float n_dot_v, float roughness) {
-  const render::FloatImage table = render::read_image(engine().parts().split_sum_table);
+  const gpu::Image& image = engine().parts().split_sum_table;
+  const render::FloatImage table = render::read_image(image, image.desc().extent);
   const auto index = [&](float value, std::uint32_t size) {
     return std::min(static_cast<std::uint32_t>(value * static_cast<float>(size)), size - 1);
   };

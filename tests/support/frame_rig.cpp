@@ -32,7 +32,8 @@ FrameRig::FrameRig(std::shared_ptr<const scene::Scene> scene, const scene::Camer
               scene_motion_,
               parts_.split_sum_table,
               parts_.sheen_table,
-              parts_.ltc_table},
+              parts_.ltc_table,
+              options.shown.value_or(options.extent)},
       plan_(parts_.device, options.extent) {
   render::write_frame_set(
       parts_, frame_set_, constants_buffer_, moving_.tables().lights,
@@ -47,8 +48,9 @@ FrameRig::FrameRig(std::shared_ptr<const scene::Scene> scene, const scene::Camer
 
 void FrameRig::set_view(const scene::Camera& camera, std::uint32_t sample) {
   const shared::FrameConstants before = constants_;
-  constants_ = render::make_frame_constants(camera, settings_, moving_, options_.extent, sample,
-                                            has_view_ ? &before : nullptr);
+  constants_ = render::make_frame_constants(camera, settings_, moving_,
+                                            {.drawn = options_.extent, .shown = inputs_.shown},
+                                            sample, has_view_ ? &before : nullptr);
   has_view_ = true;
   std::memcpy(constants_buffer_.mapped(), &constants_, sizeof constants_);
 }
@@ -60,7 +62,7 @@ void FrameRig::run() {
 }
 
 render::FloatImage FrameRig::read(gpu::ImageRef image) const {
-  return render::read_image(plan_.latest(image));
+  return render::read_image(plan_.latest(image), plan_.drawn(image));
 }
 
 }  // namespace heliograph::test

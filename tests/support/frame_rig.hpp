@@ -15,6 +15,7 @@ struct RigOptions {
   scene::Environment environment = scene::constant_environment(glm::vec3(1.0f));
   protocol::Settings settings;
   std::string tracer = "auto";
+  std::optional<VkExtent2D> shown = std::nullopt;  // where frames are drawn smaller
 };
 
 /// A scene, a camera and a frame plan in which a test declares single passes.

@@ -123,7 +123,7 @@ inline constexpr char bindings_tag = 0;
 struct NoConstants {};
 
 /// What a host kernel gets of its pass: the resources, the push constants of this frame and the
-/// plan's extent in pixels.
+/// size that it is drawn at, pixels.
 template <template <class> class List, class ConstantsType = NoConstants>
 struct HostPass : List<Mapped> {
   using Pass = HostPass;

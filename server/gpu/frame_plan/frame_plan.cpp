@@ -29,7 +29,10 @@ std::uint32_t groups(std::uint32_t threads, std::uint32_t local_size) {
 }  // namespace
 
 FramePlan::FramePlan(const Device& device, VkExtent2D extent)
-    : device_(device), extent_(extent), default_sampler_(make_default_sampler(device)) {
+    : device_(device),
+      extent_(extent),
+      drawn_(extent),
+      default_sampler_(make_default_sampler(device)) {
   VkCommandPoolCreateInfo info{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
   info.queueFamilyIndex = device.queue_family();
   info.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
@@ -49,26 +52,29 @@ std::uint32_t FramePlan::add(Resource resource) {
 }
 
 ImageRef FramePlan::image(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage,
-                          std::optional<VkExtent2D> extent) {
+                          FrameSize size) {
   const bool depth = is_depth(format);
-  ImageDesc desc{.name = std::string(name), .extent = extent.value_or(extent_), .format = format};
+  ImageDesc desc{.name = std::string(name), .extent = size.of(extent_), .format = format};
   desc.usage = extra_usage | VK_IMAGE_USAGE_SAMPLED_BIT |
                (depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_STORAGE_BIT);
   desc.mapped = device_.is_cpu() && !depth;
-  Resource resource{.name = std::string(name), .image_desc = std::move(desc)};
+  Resource resource{.name = std::string(name), .size = size, .image_desc = std::move(desc)};
   if (!shares_memory_) make(resource, {});
   return {add(std::move(resource))};
 }
 
 History FramePlan::history(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage,
-                           std::optional<VkExtent2D> extent) {
-  ImageDesc desc{.name = std::string(name), .extent = extent.value_or(extent_), .format = format};
+                           FrameSize size) {
+  ImageDesc desc{.name = std::string(name), .extent = size.of(extent_), .format = format};
   desc.usage = extra_usage | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
   desc.mapped = device_.is_cpu();
-  const std::uint32_t current =
-      add(Resource{.name = std::string(name), .part = Resource::Part::current, .image_desc = desc});
+  const std::uint32_t current = add(Resource{.name = std::string(name),
+                                             .part = Resource::Part::current,
+                                             .size = size,
+                                             .image_desc = desc});
   const std::uint32_t previous = add(Resource{.name = std::string(name) + ".previous",
                                               .part = Resource::Part::previous,
+                                              .size = size,
                                               .image_desc = std::move(desc)});
   if (!shares_memory_) make_history(current, {});
   return {{current}, {previous}};
@@ -89,7 +95,7 @@ BufferRef FramePlan::import(const Buffer& buffer) {
 
 ImageRef FramePlan::import(const Image& image, std::optional<std::uint32_t> level,
                            VkSampler sampler) {
-  Resource resource{.name = image.desc().name};
+  Resource resource{.name = image.desc().name, .size = image.desc().extent};
   resource.images = {&image, &image};
   resource.level = level;
   resource.sampler = sampler;
@@ -307,7 +313,7 @@ void FramePlan::run_host_kernel(const Pass& pass) const {
   std::array<std::byte, most_constants> constants;
   if (pass.constants) pass.constants(constants.data());
   pass.kernel(std::span(views).first(pass.listed.size()),
-              std::span(constants).first(pass.constants_size), extent_);
+              std::span(constants).first(pass.constants_size), drawn_);
 }
 
 VkCommandBuffer FramePlan::recorder() {
@@ -349,14 +355,15 @@ void FramePlan::record(const Pass& pass, VkCommandBuffer commands, std::uint32_t
     record_raster(pass, commands);
   } else {
     bind(pass, commands);
+    const VkExtent2D threads = pass.threads.of(drawn_);
     if (pass.rays) {
-      pass.rays->launch(commands, pass.threads.width);
+      pass.rays->launch(commands, threads.width);
     } else if (pass.indirect) {
       vkCmdDispatchIndirect(commands, get(BufferRef{pass.indirect->first}).handle(),
                             pass.indirect->second);
     } else {
-      vkCmdDispatch(commands, groups(pass.threads.width, pass.local_size.width),
-                    groups(pass.threads.height, pass.local_size.height), pass.layers);
+      vkCmdDispatch(commands, groups(threads.width, pass.local_size.width),
+                    groups(threads.height, pass.local_size.height), pass.layers);
     }
   }
   if (!timed_by_clock()) {
@@ -399,15 +406,14 @@ void FramePlan::record_raster(const Pass& pass, VkCommandBuffer commands) {
   VkRenderingAttachmentInfo depth{};
   if (pass.depth) depth = attachment(*pass.depth);
   VkRenderingInfo info{VK_STRUCTURE_TYPE_RENDERING_INFO};
-  info.renderArea = {{0, 0}, extent_};
+  info.renderArea = {{0, 0}, drawn_};
   info.layerCount = 1;
   info.colorAttachmentCount = static_cast<std::uint32_t>(colors.size());
   info.pColorAttachments = colors.data();
   info.pDepthAttachment = pass.depth ? &depth : nullptr;
   vkCmdBeginRendering(commands, &info);
   const VkViewport viewport{
-      0.0f, 0.0f, static_cast<float>(extent_.width), static_cast<float>(extent_.height),
-      0.0f, 1.0f};
+      0.0f, 0.0f, static_cast<float>(drawn_.width), static_cast<float>(drawn_.height), 0.0f, 1.0f};
   vkCmdSetViewport(commands, 0, 1, &viewport);
   vkCmdSetScissor(commands, 0, 1, &info.renderArea);
   bind(pass, commands);
@@ -506,7 +512,7 @@ PassBuilder& PassBuilder::depth(ImageRef image, float clear) {
   return *this;
 }
 
-PassBuilder& PassBuilder::dispatch(VkExtent2D threads, std::uint32_t layers) {
+PassBuilder& PassBuilder::dispatch(FrameSize threads, std::uint32_t layers) {
   plan_.passes_[pass_].threads = threads;
   plan_.passes_[pass_].layers = layers;
   return *this;

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "gpu/frame_plan/bindings.hpp"
+#include "gpu/frame_plan/frame_size.hpp"
 #include "gpu/memory/readback.hpp"
 #include "gpu/pipelines/ray_pipeline.hpp"
 #include "gpu/pipelines/shader.hpp"
@@ -86,8 +87,8 @@ class PassBuilder {
   PassBuilder& color(ImageRef image, std::optional<std::array<float, 4>> clear);
   PassBuilder& depth(ImageRef image, float clear);
 
-  /// One thread per pixel (or per element) and layer.
-  PassBuilder& dispatch(VkExtent2D threads, std::uint32_t layers = 1);
+  /// Threads of each layer: each_pixel(), or as many as there are elements.
+  PassBuilder& dispatch(FrameSize threads, std::uint32_t layers = 1);
   /// Groups from a VkDispatchIndirectCommand at `offset` of a buffer, which counts as read.
   PassBuilder& dispatch_indirect(BufferRef groups, VkDeviceSize offset);
   /// One invocation of a ray tracing pipeline's generation stage per element.
@@ -118,7 +119,7 @@ class PassBuilder {
 
  private:
   friend class FramePlan;
-  /// Views of the list's resources, bytes of the constants, the plan's extent.
+  /// Views of the list's resources, bytes of the constants, the size that is drawn.
   using HostRun =
       std::function<void(std::span<const HostView>, std::span<const std::byte>, VkExtent2D)>;
 
@@ -161,7 +162,15 @@ class FramePlan {
   FramePlan(const FramePlan&) = delete;
   FramePlan& operator=(const FramePlan&) = delete;
 
+  /// The size of frames.
   VkExtent2D extent() const { return extent_; }
+  /// The size that they are drawn at: that one, unless set_drawn() reduced it.
+  VkExtent2D drawn() const { return drawn_; }
+  /// The same of an image.
+  VkExtent2D drawn(ImageRef image) const;
+  /// Images that follow the frame are used from the first texel to this size from the next frame
+  /// on. Histories among them are scaled to it. At most extent(). Waits.
+  void set_drawn(VkExtent2D drawn);
   const Device& device() const { return device_; }
 
   /// Whether passes declared from now on run their host kernels, where they have one. Only devices
@@ -188,12 +197,12 @@ class FramePlan {
   /// shares memory, they may take that of the frame before's histories.
   void finish_frames_from_here();
 
-  /// An image of the plan's extent, or of its own; mapped on CPU devices.
+  /// An image; mapped on CPU devices.
   ImageRef image(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage = 0,
-                 std::optional<VkExtent2D> extent = std::nullopt);
+                 FrameSize size = each_pixel());
   /// Two images that swap after every frame; cleared to zero.
   History history(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage = 0,
-                  std::optional<VkExtent2D> extent = std::nullopt);
+                  FrameSize size = each_pixel());
   BufferRef buffer(std::string name, VkDeviceSize size, VkBufferUsageFlags usage, Memory memory);
   /// Resources owned elsewhere, which must outlive the plan.
   BufferRef import(const Buffer& buffer);
@@ -308,6 +317,7 @@ class FramePlan {
 
   const Device& device_;
   VkExtent2D extent_;
+  VkExtent2D drawn_;
   std::vector<Resource> resources_;
   std::vector<Pass> passes_;
   std::vector<std::pair<std::uint32_t, VkDescriptorSet>> shared_sets_;

@@ -109,7 +109,7 @@ void FramePlan::check_pass(const Pass& pass) const {
     fail("the shader takes " + std::to_string(pass.program->constants_size()) +
          " bytes of constants, given " + std::to_string(pass.constants_size));
   }
-  const bool dispatched = pass.threads.width > 0 || pass.indirect;
+  const bool dispatched = pass.threads.of(extent_).width > 0 || pass.indirect;
   if (!pass.is_raster && !dispatched) fail("it is never dispatched");
   if (pass.is_raster && !pass.draw) fail("it draws nothing");
   if (pass.is_raster && pass.colors.empty() && !pass.depth) fail("it has no attachment");

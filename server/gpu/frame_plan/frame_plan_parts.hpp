@@ -18,6 +18,7 @@ struct FramePlan::Resource {
 
   std::string name;
   Part part = Part::none;
+  FrameSize size{0, 0};  // of an image
   // By parity of the frame; both the same except for histories, and for what shares their memory.
   std::array<const Image*, 2> images{};
   std::array<const Buffer*, 2> buffers{};
@@ -57,7 +58,7 @@ struct FramePlan::Pass {
   std::vector<Attachment> colors;
   std::optional<Attachment> depth;
   std::optional<std::pair<std::uint32_t, VkDeviceSize>> indirect;
-  VkExtent2D threads{};
+  FrameSize threads{0, 0};
   std::uint32_t layers = 1;
   std::size_t constants_size = 0;
   std::function<void(std::byte*)> constants;

@@ -35,7 +35,12 @@ class Renderer {
   void set_materials(std::span<const shared::Material> materials);
   /// Another environment than the scene's own; null: its own again.
   void set_environment(std::shared_ptr<const LitEnvironment> environment);
+  /// Of the finished frame, pixels.
   void set_size(std::uint32_t width, std::uint32_t height);
+  /// The fraction of width and height at which frames are drawn, 0 to 1: what is drawn smaller is
+  /// reconstructed at full size from the jittered samples of several frames, and does not
+  /// accumulate. All histories continue. The path traced reference alone is drawn at full size.
+  void set_draw_scale(float scale);
   void set_camera(const scene::Camera& camera);
   /// Poses the scene by a clip of it, or by its default pose when `clip` is empty, where set_scene
   /// leaves it. Takes effect with the next frame. Motion restarts accumulation, not the histories.

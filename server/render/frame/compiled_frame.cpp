@@ -55,11 +55,11 @@ void CompiledFrame::list_buffers() {
   }
 }
 
-const gpu::Image* CompiledFrame::find(std::string_view buffer) const {
+std::optional<CompiledFrame::DrawnImage> CompiledFrame::find(std::string_view buffer) const {
   for (const auto& view : plan.views()) {
-    if (view.name == buffer) return plan.holds(view.image) ? &plan.latest(view.image) : nullptr;
+    if (view.name == buffer && plan.holds(view.image)) return latest(view.image);
   }
-  return nullptr;
+  return std::nullopt;
 }
 
 }  // namespace heliograph::render

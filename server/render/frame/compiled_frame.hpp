@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -18,8 +19,14 @@ struct CompiledFrame {
   CompiledFrame(const Engine::Parts& parts, const FrameInputs& inputs,
                 const gpu::Buffer& constants_buffer, VkExtent2D extent, bool keeps_buffers);
 
-  /// The image of that name as of the last frame, or null, also if it was not kept.
-  const gpu::Image* find(std::string_view buffer) const;
+  /// An image as of the last frame, and how much of it, from the first texel, was drawn.
+  struct DrawnImage {
+    const gpu::Image& whole;
+    VkExtent2D drawn;
+  };
+  DrawnImage latest(gpu::ImageRef image) const { return {plan.latest(image), plan.drawn(image)}; }
+  /// That of a name, if there is one that was kept.
+  std::optional<DrawnImage> find(std::string_view buffer) const;
 
   FrameInputs inputs;
   gpu::DescriptorPool pool;

@@ -55,14 +55,16 @@ glm::vec2 sample_jitter(std::uint32_t sample) {
 
 shared::FrameConstants make_frame_constants(const scene::Camera& camera,
                                             const protocol::Settings& settings,
-                                            const MovingScene& scene, VkExtent2D extent,
+                                            const MovingScene& scene, const FrameSizes& sizes,
                                             std::uint32_t sample,
                                             const shared::FrameConstants* before) {
-  const glm::vec2 size(extent.width, extent.height);
+  const glm::vec2 size(sizes.drawn.width, sizes.drawn.height);
+  const float aspect =
+      static_cast<float>(sizes.shown.width) / static_cast<float>(sizes.shown.height);
   const glm::vec2 offset =
       settings.antialiasing.jitter ? sample_jitter(sample) * 2.0f / size : glm::vec2(0.0f);
   const glm::mat4 view = scene::view_matrix(camera);
-  const glm::mat4 projection = scene::projection_matrix(camera, size.x / size.y);
+  const glm::mat4 projection = scene::projection_matrix(camera, aspect);
   shared::FrameConstants constants{};
   constants.view = view;
   constants.unjittered = projection * view;
@@ -73,7 +75,7 @@ shared::FrameConstants make_frame_constants(const scene::Camera& camera,
   const glm::vec2 scale{1.0f / projection[0][0], 1.0f / projection[1][1]};
   constants.unproject = {scale, -offset * scale};
   constants.eye = glm::vec4(camera.eye, 1.0f);
-  constants.extent = {extent.width, extent.height};
+  constants.extent = {sizes.drawn.width, sizes.drawn.height};
   constants.sample_index = sample;
   constants.seed = static_cast<std::uint32_t>(settings.sampling.seed);
   constants.light_count = static_cast<std::uint32_t>(scene.lights().size());

@@ -13,11 +13,16 @@ class MovingScene;
 /// rest follow the R2 sequence (Roberts 2018).
 glm::vec2 sample_jitter(std::uint32_t sample);
 
+/// Sizes of a frame, pixels: as it is drawn, and as it is shown.
+struct FrameSizes {
+  VkExtent2D drawn, shown;
+};
+
 /// The frame's uniform block for `sample` of a static view. The previous matrices are taken from
 /// `before`, which is this view's block of the frame before (or null for the first).
 shared::FrameConstants make_frame_constants(const scene::Camera& camera,
                                             const protocol::Settings& settings,
-                                            const MovingScene& scene, VkExtent2D extent,
+                                            const MovingScene& scene, const FrameSizes& sizes,
                                             std::uint32_t sample,
                                             const shared::FrameConstants* before);
 

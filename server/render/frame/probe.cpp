@@ -34,8 +34,13 @@ void mix(FloatImage& own, const FloatImage& mean, float mean_weight) {
 }  // namespace
 
 FloatImage shown_radiance(const CompiledFrame& compiled, float mean_weight) {
-  FloatImage radiance = read_image(compiled.plan.latest(compiled.outputs.radiance));
-  mix(radiance, read_image(compiled.plan.latest(compiled.outputs.accumulated.current)),
+  const auto read = [&](gpu::ImageRef ref) {
+    const auto [image, drawn] = compiled.latest(ref);
+    return read_image(image, drawn);
+  };
+  FloatImage radiance = read(compiled.outputs.radiance);
+  // Frames that are reconstructed from smaller ones show none of the mean, which is as small.
+  mix(radiance, mean_weight > 0.0f ? read(compiled.outputs.accumulated.current) : radiance,
       mean_weight);
   return radiance;
 }
@@ -45,19 +50,21 @@ std::vector<BufferValue> inspect_buffers(const CompiledFrame& compiled, const Vi
   std::vector<BufferValue> values;
   for (const BufferInfo& buffer : compiled.buffers) {
     if (buffer.name == present_buffers.radiance.name) {
-      const gpu::Image& image = compiled.plan.latest(compiled.outputs.radiance);
-      const gpu::Image& mean = compiled.plan.latest(compiled.outputs.accumulated.current);
-      const glm::uvec2 pixel = pixel_at(point, image.desc().extent);
-      FloatImage value = read_texel(image, pixel.x, pixel.y);
-      mix(value, read_texel(mean, pixel.x, pixel.y), mean_weight);
+      const auto read = [&](gpu::ImageRef ref) {
+        const auto [image, drawn] = compiled.latest(ref);
+        const glm::uvec2 pixel = pixel_at(point, drawn);
+        return read_texel(image, pixel.x, pixel.y);
+      };
+      FloatImage value = read(compiled.outputs.radiance);
+      mix(value, read(compiled.outputs.accumulated.current), mean_weight);
       values.push_back({buffer.name, std::move(value.rgba), {}});
       continue;
     }
     const View view = find_view(buffer.name);
-    const gpu::Image* const image = compiled.find(view.buffer->name);
+    const auto image = compiled.find(view.buffer->name);
     if (!image) continue;
-    const glm::uvec2 pixel = pixel_at(point, image->desc().extent);
-    FloatImage value = read_texel(*image, pixel.x, pixel.y);
+    const glm::uvec2 pixel = pixel_at(point, image->drawn);
+    FloatImage value = read_texel(image->whole, pixel.x, pixel.y);
     value = extract(view, value, context, pixel);
     value.rgba.resize(value.channels);
     values.push_back({buffer.name, std::move(value.rgba), std::string(view.unit())});
@@ -68,16 +75,16 @@ std::vector<BufferValue> inspect_buffers(const CompiledFrame& compiled, const Vi
 protocol::Result<std::optional<SurfacePoint>> surface_at(const CompiledFrame& compiled,
                                                          const shared::FrameConstants& frame,
                                                          glm::vec2 point) {
-  const gpu::Image* const instances = compiled.find(gbuffer_buffers.instance.name);
-  const gpu::Image* const motion = compiled.find(gbuffer_buffers.motion.name);
-  const gpu::Image* const normals = compiled.find(gbuffer_buffers.normals.name);
+  const auto instances = compiled.find(gbuffer_buffers.instance.name);
+  const auto motion = compiled.find(gbuffer_buffers.motion.name);
+  const auto normals = compiled.find(gbuffer_buffers.normals.name);
   if (!instances || !motion || !normals) {
     return protocol::error::conflict(
         "reference.use", "is on: the path traced reference image has no surfaces to pick");
   }
-  const glm::uvec2 pixel = pixel_at(point, instances->desc().extent);
-  const auto instance = static_cast<std::uint32_t>(texel(*instances, pixel).x);
-  const float view_z = texel(*motion, pixel).w;
+  const glm::uvec2 pixel = pixel_at(point, instances->drawn);
+  const auto instance = static_cast<std::uint32_t>(texel(instances->whole, pixel).x);
+  const float view_z = texel(motion->whole, pixel).w;
   if (instance == 0 || view_z <= 0.0f) return std::optional<SurfacePoint>();
 
   const bool orthographic = (frame.flags & shared::frame_orthographic) != 0;
@@ -90,7 +97,7 @@ protocol::Result<std::optional<SurfacePoint>> surface_at(const CompiledFrame& co
                        .position = glm::vec3(frame.inverse_view * glm::vec4(in_view, 1.0f)),
                        .normal = {},
                        .distance = orthographic ? view_z : glm::length(in_view)};
-  const glm::vec4 encoded = texel(*normals, pixel);
+  const glm::vec4 encoded = texel(normals->whole, pixel);
   surface.normal = octahedral_decode({encoded.z, encoded.w});
   const glm::vec3 toward_eye =
       orthographic ? glm::vec3(frame.inverse_view[2]) : glm::vec3(frame.eye) - surface.position;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <utility>
@@ -56,6 +57,8 @@ struct Renderer::State {
                          VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::upload) {}
 
   void rebuild_frame_plan();
+  VkExtent2D drawn() const;
+  void set_drawn();
   void change_settings(const protocol::Settings& changed);
   void use_newest_shaders();
   Frame output();
@@ -95,7 +98,8 @@ struct Renderer::State {
   std::optional<MovingScene> moving;  // the scene in this renderer's pose
   scene::Camera camera;
   protocol::Settings settings;
-  VkExtent2D extent{640, 360};
+  VkExtent2D extent{640, 360};  // of the finished frame
+  float draw_scale = 1.0f;
 
   std::unique_ptr<CompiledFrame> compiled;
 };
@@ -115,12 +119,27 @@ void Renderer::State::rebuild_frame_plan() {
                            scene_motion,
                            parts.split_sum_table,
                            parts.sheen_table,
-                           parts.ltc_table};
+                           parts.ltc_table,
+                           extent};
   compiled =
       std::make_unique<CompiledFrame>(parts, inputs, constants_buffer, extent, buffers_needed());
+  compiled->plan.set_drawn(drawn());
   has_buffers = false;
   has_previous = false;
   sample_index = 0;
+  restart_accumulation();
+}
+
+VkExtent2D Renderer::State::drawn() const {
+  if (settings.reference.use == protocol::ReferenceUse::always) return extent;
+  const auto scaled = [&](std::uint32_t side) {
+    return std::max(1u, static_cast<std::uint32_t>(std::lround(draw_scale * float(side))));
+  };
+  return {scaled(extent.width), scaled(extent.height)};
+}
+
+void Renderer::State::set_drawn() {
+  compiled->plan.set_drawn(drawn());
   restart_accumulation();
 }
 
@@ -147,9 +166,9 @@ void Renderer::State::use_newest_shaders() {
 std::optional<FloatImage> Renderer::State::read(std::string_view name) const {
   if (name == present_buffers.radiance.name) return shown_radiance(*compiled, shown_mean_weight);
   const View view = find_view(name);
-  const gpu::Image* const image = view ? compiled->find(view.buffer->name) : nullptr;
+  const auto image = view ? compiled->find(view.buffer->name) : std::nullopt;
   if (!image) return std::nullopt;
-  return extract(view, read_image(*image),
+  return extract(view, read_image(image->whole, image->drawn),
                  {constants, exposure_factor(compiled->plan, compiled->outputs.exposure)});
 }
 
@@ -211,6 +230,11 @@ void Renderer::set_size(std::uint32_t width, std::uint32_t height) {
   if (state_->extent.width == width && state_->extent.height == height) return;
   state_->extent = {width, height};
   state_->rebuild_frame_plan();
+}
+
+void Renderer::set_draw_scale(float scale) {
+  scale = std::clamp(scale, 0.0f, 1.0f);
+  if (std::exchange(state_->draw_scale, scale) != scale) state_->set_drawn();
 }
 
 void Renderer::set_camera(const scene::Camera& camera) {
@@ -289,9 +313,9 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
   if (!state.settings.accumulation.enabled) state.clock.samples = 0;
   const shared::FrameConstants before = state.constants;
   const bool had_previous = state.has_previous;
-  state.constants =
-      make_frame_constants(state.camera, state.settings, *state.moving, state.extent,
-                           state.sample_index++, state.has_previous ? &before : nullptr);
+  state.constants = make_frame_constants(
+      state.camera, state.settings, *state.moving, {.drawn = state.drawn(), .shown = state.extent},
+      state.sample_index++, state.has_previous ? &before : nullptr);
   const std::uint32_t still = state.scene_motion.still_frames;
   state.scene_motion =
       render::scene_motion(*state.moving, state.constants, state.has_previous ? &before : nullptr);

@@ -144,8 +144,11 @@ HWY_EXPORT(make_tile);
 
 void specular_rays(const SpecularRaysJob& job) {
   const int scale = job.directions ? 2 : 1;
-  const int cells = (static_cast<int>(job.frame.extent.x) + scale - 1) / scale;
-  for_each_tile(cells, job.rows, [&](const Tile& tile) {
+  const auto cells = [scale](std::uint32_t size) {
+    return (static_cast<int>(size) + scale - 1) / scale;
+  };
+  const Rows rows = job.rows.within(cells(job.frame.extent.y));
+  for_each_tile(cells(job.frame.extent.x), rows, [&](const Tile& tile) {
     HWY_DYNAMIC_DISPATCH(make_tile)(job, tile);
   });
   job.rays.end();

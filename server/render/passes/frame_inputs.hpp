@@ -23,6 +23,10 @@ struct FrameClock {
   bool first_counts = true;
 };
 
+inline glm::uvec2 size_of(VkExtent2D extent) {
+  return {extent.width, extent.height};
+}
+
 /// What a frame is made from. References outlive the plan; `constants` and `clock` change in every
 /// frame.
 struct FrameInputs {
@@ -42,6 +46,10 @@ struct FrameInputs {
   const gpu::Image& split_sum_table;  // rg32f
   const gpu::Image& sheen_table;      // r32f
   const gpu::Image& ltc_table;        // rgba32f
+  VkExtent2D shown;                   // size of the finished frame, pixels
+
+  /// Whether this frame is drawn smaller than it is shown.
+  bool is_reduced() const { return constants.extent != size_of(shown); }
 
   /// The compute program of an embedded shader, made for a scene with these features (all of them
   /// where the shader does not ask) when the plan needs it.

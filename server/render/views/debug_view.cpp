@@ -70,15 +70,16 @@ FloatImage read_texel(const gpu::Image& image, std::uint32_t x, std::uint32_t y)
   return value;
 }
 
-FloatImage read_image(const gpu::Image& image) {
+FloatImage read_image(const gpu::Image& image, VkExtent2D size) {
   const auto& desc = image.desc();
   const std::vector<std::byte> bytes = image.download();
   const std::uint32_t stride = gpu::texel_bytes(desc.format);
-  FloatImage values = shape_of(desc.format, desc.extent.width, desc.extent.height);
-  const std::size_t count = std::size_t{values.width} * values.height;
-  for (std::size_t i = 0; i < count; ++i) {
-    for (std::uint32_t c = 0; c < 4; ++c) {
-      values.rgba[i * 4 + c] = channel(bytes.data() + i * stride, desc.format, c);
+  FloatImage values = shape_of(desc.format, size.width, size.height);
+  float* value = values.rgba.data();
+  for (std::size_t y = 0; y < size.height; ++y) {
+    const std::byte* const row = bytes.data() + y * desc.extent.width * stride;
+    for (std::size_t x = 0; x < size.width; ++x) {
+      for (std::uint32_t c = 0; c < 4; ++c) *value++ = channel(row + x * stride, desc.format, c);
     }
   }
   return values;

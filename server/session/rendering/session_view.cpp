@@ -13,6 +13,7 @@ namespace heliograph::session {
 
 using std::chrono::duration_cast;
 using std::chrono::microseconds;
+using std::chrono::milliseconds;
 
 namespace {
 
@@ -22,6 +23,8 @@ constexpr std::chrono::seconds retry_delay{1};
 /// Frames keep their buffers for so long after one was read: another one often follows, and the
 /// change takes as long as a frame.
 constexpr std::chrono::seconds keep_buffers_after{10};
+/// Frames of static views trace every sample: about how much longer they take than moving ones.
+constexpr int refining_frame_factor = 2;
 
 std::uint32_t microseconds_of(Clock::duration duration) {
   return static_cast<std::uint32_t>(duration_cast<microseconds>(duration).count());
@@ -127,7 +130,7 @@ SessionView::Work SessionView::advance(bool may_draw) {
   if (session_->timeline().in_lockstep()) return advance_step(may_draw);
   newest_stepped_ = false;
   adopt_state();
-  adopt_size();
+  adopt_draw_scale();
   readers_.answer_probes(readable_frame(false));
   if (readers_.answer_captures(readable_frame(false))) return Work::small;
   if (next_view_state(view_inputs()) == ViewState::final) broadcast_.send_final();
@@ -138,8 +141,8 @@ SessionView::Work SessionView::advance(bool may_draw) {
   return Work::drawing;
 }
 
-/// One requested frame, at full size whatever it takes; between steps the frame can be read by what
-/// was requested before the next one.
+/// One requested frame, at full resolution whatever it takes; between steps the frame can be read
+/// by what was requested before the next one.
 SessionView::Work SessionView::advance_step(bool may_draw) {
   if (!newest_stepped_) readers_.fail_before_first_step();
   readers_.answer_probes(readable_frame(true));
@@ -150,7 +153,7 @@ SessionView::Work SessionView::advance_step(bool may_draw) {
   }
   if (const std::optional<StepFrame> step = session_->timeline().begin_step(first_read)) {
     adopt(step->state);
-    set_size({state_.width, state_.height});
+    set_draw_scale(1.0f);
     render_frame(step->seconds);
     newest_stepped_ = true;
     broadcast_.pump();
@@ -211,7 +214,7 @@ void SessionView::adopt(RenderState next) {
   }
   const bool same_scene = state_.resources == before.resources;
   const bool resized = state_.width != before.width || state_.height != before.height;
-  if (resized) full_frame_time_ = {};
+  if (resized || !same_scene) full_frame_time_ = {};
   const bool jumped = state_.discontinuities != before.discontinuities;
   if (jumped) renderer_->invalidate_history();
   discontinuous_ |= resized || !same_scene || jumped;
@@ -255,14 +258,16 @@ void SessionView::adopt_pose() {
   renderer_->set_camera(scene::camera_at(*state_.scene, state_.camera, pose));
 }
 
-void SessionView::adopt_size() {
-  set_size(draw_size({.now = Clock::now(),
-                      .camera_moved_at = camera_moved_at_,
-                      .animation_playing = state_.animation.playing,
-                      .full = {state_.width, state_.height},
-                      .full_frame_time = full_frame_time_,
-                      .motion_scale = state_.settings.motion.scale,
-                      .capture_pending = readers_.has_captures()}));
+void SessionView::adopt_draw_scale() {
+  set_draw_scale(draw_scale({.now = Clock::now(),
+                             .camera_moved_at = camera_moved_at_,
+                             .animation_playing = state_.animation.playing,
+                             .full = {state_.width, state_.height},
+                             .full_frame_time = full_frame_time_,
+                             .frame_time = milliseconds(state_.settings.motion.frame_time),
+                             .least_scale = state_.settings.motion.scale,
+                             .scale = draw_scale_,
+                             .capture_pending = readers_.has_captures()}));
 }
 
 /// What will be read after a step is not known before it.
@@ -272,13 +277,31 @@ void SessionView::keep_buffers() {
                           Clock::now() < buffers_read_at_ + keep_buffers_after);
 }
 
-void SessionView::set_size(DrawSize size) {
-  draw_size_ = size;
-  renderer_->set_size(size.width, size.height);
+/// The path traced reference is not reconstructed: where it is shown alone, frames are smaller.
+void SessionView::set_draw_scale(float scale) {
+  const bool reference = state_.settings.reference.use == protocol::ReferenceUse::always;
+  const auto scaled = [&](std::uint32_t side) {
+    const float pixels = static_cast<float>(side) * (reference ? scale : 1.0f);
+    return std::max(1u, static_cast<std::uint32_t>(pixels + 0.5f));
+  };
+  draw_scale_ = scale;
+  renderer_->set_size(scaled(state_.width), scaled(state_.height));
+  renderer_->set_draw_scale(scale);
+}
+
+/// Follows the times of moving frames slowly. Before there are any, refining frames tell.
+void SessionView::measure_frame(ViewState state, Clock::duration taken) {
+  const auto full = duration_cast<Clock::duration>(taken / time_share(draw_scale_));
+  const bool known = full_frame_time_ > Clock::duration::zero();
+  if (state == ViewState::moving) {
+    full_frame_time_ = known ? (3 * full_frame_time_ + full) / 4 : full;
+  } else if (!known) {
+    full_frame_time_ = full / refining_frame_factor;
+  }
 }
 
 bool SessionView::is_full_size() const {
-  return draw_size_ == DrawSize{state_.width, state_.height};
+  return draw_scale_ == 1.0f;
 }
 
 /// A change and its reverse leave the image as it is, but the viewer that made them waits for a
@@ -341,7 +364,8 @@ void SessionView::render_frame(double seconds) {
   renderer_->set_frame_seconds(static_cast<float>(seconds));
   const Clock::time_point before = std::exchange(frame_began_at_, start);
   // A viewer that moves the camera does not wait for a sample of the view that it leaves.
-  const bool refining = next_view_state(view_inputs()) == ViewState::refining;
+  const ViewState view_state = next_view_state(view_inputs());
+  const bool refining = view_state == ViewState::refining;
   std::optional<render::Frame> finished =
       renderer_->render([&] { return refining && session_->version() != state_.version; });
   if (!finished) {
@@ -350,7 +374,7 @@ void SessionView::render_frame(double seconds) {
   }
   render::Frame& frame = *finished;
   const Clock::time_point end = Clock::now();
-  if (is_full_size()) full_frame_time_ = end - start;
+  measure_frame(view_state, end - start);
   services_.measurements.rendered(std::chrono::duration<double>(end - start).count(),
                                   pass_timings(frame));
   newest_ = describe(std::move(frame), start, end);

@@ -67,9 +67,10 @@ class SessionView {
   void adopt(RenderState next);
   void adopt_edits(const RenderState& before);
   void adopt_pose();
-  void adopt_size();
+  void adopt_draw_scale();
   void keep_buffers();
-  void set_size(DrawSize size);
+  void set_draw_scale(float scale);
+  void measure_frame(ViewState state, Clock::duration taken);
   bool is_full_size() const;
   bool needs_frame() const;
   ViewInputs view_inputs() const;
@@ -93,8 +94,8 @@ class SessionView {
 
   RenderState state_;
   Clock::time_point camera_moved_at_;
-  DrawSize draw_size_;                 // of the renderer
-  Clock::duration full_frame_time_{};  // of the newest frame of full size; zero: not known
+  float draw_scale_ = 1.0f;            // of the renderer
+  Clock::duration full_frame_time_{};  // that moving frames take at full size; zero: not known
   std::shared_ptr<const RenderedFrame> newest_;
   std::uint64_t newest_version_ = 0;     // of the state that it shows
   bool newest_stepped_ = false;          // it was rendered in lockstep

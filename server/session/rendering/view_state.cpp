@@ -5,12 +5,16 @@
 namespace heliograph::session {
 namespace {
 
-using std::chrono::milliseconds;
-
-/// Motion stutters where full frames take longer.
-constexpr milliseconds slow_frame{66};
 /// Images of at most so many pixels are never reduced.
-constexpr std::uint32_t min_reducible_pixels = 640 * 360;
+constexpr std::uint32_t min_reducible_pixels = 320 * 180;
+/// Fractions of width and height that frames are drawn at.
+constexpr float scale_steps[] = {1.0f, 0.8f, 0.67f, 0.5f};
+/// The part of a frame's time that does not depend on the size it is drawn at.
+constexpr float size_share = 0.1f;
+/// A larger scale must be expected to take so much of that time, the present one may take so
+/// much: a scene whose times swing about it keeps one scale.
+constexpr float step_up = 0.8f;
+constexpr float stay = 1.15f;
 
 bool is_moving(const ViewInputs& in) {
   return in.lockstep || in.animation_playing || in.newer_state || in.reduced_size ||
@@ -54,16 +58,25 @@ bool should_draw(ViewState state, const FrameDemand& demand) {
   return false;
 }
 
-DrawSize draw_size(const ResolutionInputs& in) {
+float time_share(float scale) {
+  return size_share + (1.0f - size_share) * scale * scale;
+}
+
+float draw_scale(const ResolutionInputs& in) {
   const bool moves = in.animation_playing || in.now < in.camera_moved_at + final_delay;
-  const bool reduced = moves && !in.capture_pending && in.full_frame_time > slow_frame &&
-                       in.full.width * in.full.height > min_reducible_pixels;
-  if (!reduced) return in.full;
-  const auto scaled = [&](std::uint32_t side) {
-    const float pixels = static_cast<float>(side) * in.motion_scale;
-    return std::max(1u, static_cast<std::uint32_t>(pixels + 0.5f));
+  const bool reducible = in.full.width * in.full.height > min_reducible_pixels;
+  if (!moves || in.capture_pending || !reducible) return 1.0f;
+  if (in.frame_time == Clock::duration::zero()) return in.least_scale;
+  const auto fits = [&](float scale) {
+    const float margin = scale > in.scale ? step_up : scale == in.scale ? stay : 1.0f;
+    return time_share(scale) * static_cast<float>(in.full_frame_time.count()) <=
+           margin * static_cast<float>(in.frame_time.count());
   };
-  return {scaled(in.full.width), scaled(in.full.height)};
+  for (const float scale : scale_steps) {
+    if (scale <= in.least_scale) break;
+    if (fits(scale)) return scale;
+  }
+  return in.least_scale;
 }
 
 }  // namespace heliograph::session

@@ -40,7 +40,7 @@ struct ViewInputs {
   bool newer_state = false;            // the session has changed since its state was taken over
   bool animation_playing = false;
   bool lockstep = false;
-  bool reduced_size = false;  // frames are drawn smaller than the session's size
+  bool reduced_size = false;  // frames are drawn at less than full resolution
   bool needs_frame = false;   // the next frame would differ from the newest one
   bool has_frame = false;
   bool converged = false;   // the newest frame has all its samples
@@ -63,7 +63,7 @@ enum class Pace {
 
 /// What is drawn in one state of a view.
 struct DrawPolicy {
-  bool dynamic_resolution;  // the size may be reduced; otherwise it is the session's
+  bool dynamic_resolution;  // it may be drawn at less than full resolution
   Pace pace;
   FramePurpose purpose;  // of the frames that are sent; it decides their quality
 };
@@ -106,12 +106,19 @@ struct ResolutionInputs {
   Clock::time_point camera_moved_at;  // as in ViewInputs
   bool animation_playing = false;
   DrawSize full;                      // the session's size
-  Clock::duration full_frame_time{};  // of the newest frame of full size; zero: not known
-  float motion_scale = 1.0f;          // of width and height
-  bool capture_pending = false;       // captures are of full size
+  Clock::duration full_frame_time{};  // that a moving frame takes at full size; zero: not known
+  Clock::duration frame_time{};       // that it should take at most; zero: any is too long
+  float least_scale = 1.0f;           // of width and height
+  float scale = 1.0f;                 // of the newest frame
+  bool capture_pending = false;       // captures are of full resolution
 };
 
-/// The size to draw: reduced while the camera moves or a clip plays, where full frames are slow.
-DrawSize draw_size(const ResolutionInputs& in);
+/// The fraction of width and height to draw at: less than 1 while the camera moves or a clip plays
+/// and full frames are slow. Of a few steps, and it changes only where times differ clearly, since
+/// every change scales all histories.
+float draw_scale(const ResolutionInputs& in);
+
+/// The part of a full frame's time that a frame takes at this scale.
+float time_share(float scale);
 
 }  // namespace heliograph::session

@@ -2,7 +2,7 @@
 // includes this binds them as `percentiles`.
 
 vec4 percentiles_at(ivec2 pixel) {
-  ivec2 last = imageSize(percentiles) - 1;
+  ivec2 last = (ivec2(frame.extent) + 7) / 8 - 1;
   vec2 position = (vec2(pixel) + 0.5) / 8.0 - 0.5;
   ivec2 corner = ivec2(floor(position));
   vec2 f = position - vec2(corner);

@@ -33,7 +33,7 @@ layout(push_constant) uniform Constants {
 
 void main() {
   ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-  bool inside = all(lessThan(cell, imageSize(radiance)));
+  bool inside = all(lessThan(cell, (ivec2(frame.extent) + scale - 1) / scale));
   ivec2 pixel = inside ? traced_pixel(cell, scale) : ivec2(0);
   float view_z = inside ? imageLoad(motion, pixel).w : 0.0;
   bool requested = false;

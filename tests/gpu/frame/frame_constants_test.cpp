@@ -15,7 +15,8 @@ class FrameConstants : public testing::Test {
  protected:
   shared::FrameConstants make(const scene::Camera& camera, std::uint32_t sample,
                               const shared::FrameConstants* before = nullptr) {
-    return render::make_frame_constants(camera, settings_, rig_.moving(), extent, sample, before);
+    return render::make_frame_constants(camera, settings_, rig_.moving(), {extent, extent}, sample,
+                                        before);
   }
   scene::Camera camera_ = look({1, 2, 5}, {0, 0.5f, 0}, 50.0f);
   FrameRig rig_{SceneBuilder().build(), camera_, {.extent = extent}};

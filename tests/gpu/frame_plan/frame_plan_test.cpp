@@ -145,6 +145,38 @@ TEST_F(FramePlanTest, HistoriesSwapEveryFrameAndReset) {
   EXPECT_EQ(value(history.current), 1.0f);
 }
 
+TEST_F(FramePlanTest, HistoriesKeepTheirContentWhenTheDrawnSizeChanges) {
+  const History history = plan_.history("texels", format);
+  add("texels", history.previous, history.current, 0.0f);
+  plan_.compile();
+  const VkExtent2D full = plan_.extent();
+  std::vector<float> texels(std::size_t{full.width} * full.height);
+  for (std::size_t i = 0; i < texels.size(); ++i) texels[i] = static_cast<float>(i);
+  plan_.latest(history.current).upload(std::as_bytes(std::span(texels)));
+
+  VkExtent2D before = full;
+  for (const VkExtent2D drawn : {VkExtent2D{full.width - 3, full.height / 2}, full, {1, 1}}) {
+    std::vector<float> expected = texels;
+    for (std::uint32_t y = 0; y < drawn.height; ++y) {
+      for (std::uint32_t x = 0; x < drawn.width; ++x) {
+        const auto column = static_cast<std::uint32_t>((x + 0.5) / drawn.width * before.width);
+        const auto row = static_cast<std::uint32_t>((y + 0.5) / drawn.height * before.height);
+        expected[y * full.width + x] = texels[row * full.width + column];
+      }
+    }
+    plan_.set_drawn(drawn);
+    plan_.execute();
+    const auto bytes = plan_.latest(history.current).download();
+    std::memcpy(texels.data(), bytes.data(), bytes.size());
+    for (std::uint32_t y = 0; y < drawn.height; ++y) {
+      for (std::uint32_t x = 0; x < drawn.width; ++x) {
+        EXPECT_EQ(texels[y * full.width + x], expected[y * full.width + x]) << x << ", " << y;
+      }
+    }
+    before = drawn;
+  }
+}
+
 TEST_F(FramePlanTest, CanceledFrameDoesNotSwapHistories) {
   if (!device_.is_cpu()) GTEST_SKIP() << "frames are canceled on CPU devices only";
   const auto a = image("a"), b = image("b");

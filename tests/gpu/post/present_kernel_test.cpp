@@ -9,8 +9,9 @@ namespace {
 
 const scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
 
-RigOptions options(VkExtent2D extent, protocol::ToneMapCurve curve) {
-  RigOptions made{.extent = extent};
+RigOptions options(VkExtent2D extent, protocol::ToneMapCurve curve,
+                   std::optional<VkExtent2D> shown) {
+  RigOptions made{.extent = extent, .shown = shown};
   made.settings.tone_map.curve = curve;
   made.settings.exposure.compensation = -0.4f;
   return made;
@@ -19,8 +20,9 @@ RigOptions options(VkExtent2D extent, protocol::ToneMapCurve curve) {
 /// Presentation by the shader and by its host kernel.
 class KernelComparison {
  public:
-  KernelComparison(VkExtent2D extent, protocol::ToneMapCurve curve)
-      : rig_(SceneBuilder().build(), camera, options(extent, curve)) {
+  KernelComparison(VkExtent2D extent, protocol::ToneMapCurve curve,
+                   std::optional<VkExtent2D> shown = std::nullopt)
+      : rig_(SceneBuilder().build(), camera, options(extent, curve, shown)) {
     RandomFrame random(rig_);
     const auto radiance = random.four("radiance", glm::vec4(-0.1f), glm::vec4(2));
     const auto mean = random.four("mean", glm::vec4(0), glm::vec4(12));
@@ -69,6 +71,17 @@ TEST_F(PresentKernel, MatchesShaderAtAnySize) {
     KernelComparison comparison(extent, protocol::ToneMapCurve::neutral);
     comparison.rig().run();
     EXPECT_LT(comparison.statistics().max, 1.01 / 255.0) << extent.width << " x " << extent.height;
+  }
+}
+
+TEST_F(PresentKernel, ShowsTheNearestPixelsOfSmallerFrames) {
+  for (const VkExtent2D shown : {VkExtent2D{177, 95}, {150, 80}, {103, 61}, {7, 300}}) {
+    const VkExtent2D drawn{std::min(shown.width, 100u), std::min(shown.height, 60u)};
+    KernelComparison comparison(drawn, protocol::ToneMapCurve::neutral, shown);
+    comparison.rig().run();
+    const ErrorStatistics result = comparison.statistics();
+    EXPECT_LT(result.max, 1.01 / 255.0) << shown.width << " x " << shown.height;
+    EXPECT_GT(result.magnitude, 0.2);
   }
 }
 

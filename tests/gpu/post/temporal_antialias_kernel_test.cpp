@@ -11,6 +11,7 @@ struct View {
   VkExtent2D extent{77, 45};
   bool orthographic = false;
   bool anti_flicker = true;
+  std::optional<VkExtent2D> shown = std::nullopt;
 };
 
 scene::Camera camera(const View& view, float turn) {
@@ -20,7 +21,7 @@ scene::Camera camera(const View& view, float turn) {
 }
 
 RigOptions options(const View& view) {
-  RigOptions made{.extent = view.extent};
+  RigOptions made{.extent = view.extent, .shown = view.shown};
   made.settings.antialiasing.anti_flicker = view.anti_flicker;
   made.settings.exposure.compensation = 0.7f;
   return made;
@@ -100,6 +101,23 @@ TEST_F(TemporalAntialiasKernel, MatchesShaderAtAnySize) {
     comparison.next();
     comparison.next();
     EXPECT_LT(comparison.statistics().mean, 2e-4) << extent.width << " x " << extent.height;
+  }
+}
+
+TEST_F(TemporalAntialiasKernel, MatchesShaderWhereFramesAreDrawnSmaller) {
+  for (const auto& [drawn, shown] : {std::pair<VkExtent2D, VkExtent2D>{{77, 45}, {96, 56}},
+                                     {{77, 45}, {115, 67}},
+                                     {{77, 45}, {154, 90}},
+                                     {{3, 5}, {6, 10}},
+                                     {{16, 1}, {33, 2}}}) {
+    KernelComparison comparison({.extent = drawn, .shown = shown});
+    comparison.rig().run();
+    EXPECT_LT(comparison.statistics().mean, 1e-4) << "without history " << shown.width;
+    for (int i = 0; i < 4; ++i) comparison.next();
+    const ErrorStatistics result = comparison.statistics();
+    EXPECT_LT(result.mean, 1e-3) << shown.width << " x " << shown.height;
+    EXPECT_LT(result.outliers, 4e-3)
+        << "more differences than rounding between two samples explains: " << shown.width;
   }
 }
 

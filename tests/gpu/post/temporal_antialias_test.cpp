@@ -245,6 +245,128 @@ TEST_F(TemporalAntialiasTest, NewPixelsAverageTheirFirstFrames) {
   }
 }
 
+/// A moving pattern, drawn by jittered samples of a part of the size that is shown.
+class Reconstruction {
+ public:
+  explicit Reconstruction(VkExtent2D drawn)
+      : drawn_(drawn),
+        rig_(SceneBuilder().build(), look({0, 0, 3}, {0, 0, 0}),
+             {.extent = drawn,
+              .shown = drawn.width == shown.width ? std::nullopt : std::optional(shown)}) {
+    const Texels black(std::size_t{drawn.width} * drawn.height, glm::vec4(0.0f));
+    hdr_ = rig_.input("hdr", VK_FORMAT_R32G32B32A32_SFLOAT, black);
+    gbuffer_.motion = rig_.input("motion", VK_FORMAT_R32G32B32A32_SFLOAT, black);
+    const render::Exposure exposure = render::expose(rig_.plan(), rig_.inputs(), hdr_, hdr_);
+    resolved_ = render::temporal_antialias(rig_.plan(), rig_.inputs(), gbuffer_, exposure, hdr_);
+  }
+
+  /// The next frame of a pattern that has moved by `pixels` since the last.
+  render::FloatImage frame(const Paint& pattern, const glm::vec2& pixels) {
+    if (frames_ > 0) rig_.set_view(look({0, 0, 3}, {0, 0, 0}), frames_);
+    const glm::vec2 jitter = render::sample_jitter(frames_++);
+    const glm::vec2 size(drawn_.width, drawn_.height), full(shown.width, shown.height);
+    Texels texels;
+    for (std::uint32_t y = 0; y < drawn_.height; ++y) {
+      for (std::uint32_t x = 0; x < drawn_.width; ++x) {
+        const glm::vec2 at = (glm::vec2(x, y) + 0.5f - jitter) / size * full;
+        texels.emplace_back(pattern(at.x, at.y), 1.0f);
+      }
+    }
+    rig_.fill(hdr_, texels);
+    rig_.fill(gbuffer_.motion, Texels(texels.size(), glm::vec4(-pixels / full, 0, 5)));
+    rig_.run();
+    return rig_.read(resolved_);
+  }
+
+  static constexpr VkExtent2D shown{96, 64};
+
+ private:
+  VkExtent2D drawn_;
+  FrameRig rig_;
+  gpu::ImageRef hdr_;
+  render::GBuffer gbuffer_;
+  gpu::ImageRef resolved_;
+  std::uint32_t frames_ = 0;
+};
+
+/// Rings that become finer from the middle of the frame, up to waves of three pixels.
+Paint zone_plate(float moved) {
+  return [moved](float x, float y) {
+    const glm::vec2 off(x - 48.0f - moved, y - 32.0f);
+    return glm::vec3(0.5f + 0.4f * std::cos(0.022f * glm::dot(off, off)));
+  };
+}
+
+/// Mean over each pixel's area.
+Texels supersampled(const Paint& pattern) {
+  Texels texels;
+  for (std::uint32_t y = 0; y < Reconstruction::shown.height; ++y) {
+    for (std::uint32_t x = 0; x < Reconstruction::shown.width; ++x) {
+      glm::vec3 sum(0.0f);
+      for (int i = 0; i < 64; ++i) {
+        const auto part = [](int k) { return (static_cast<float>(k) + 0.5f) / 8.0f; };
+        sum += pattern(static_cast<float>(x) + part(i % 8), static_cast<float>(y) + part(i / 8));
+      }
+      texels.emplace_back(sum / 64.0f, 1.0f);
+    }
+  }
+  return texels;
+}
+
+std::vector<float> errors(const render::FloatImage& image, const Texels& expected) {
+  std::vector<float> all;
+  for (std::uint32_t y = 6; y < Reconstruction::shown.height - 6; ++y) {
+    for (std::uint32_t x = 10; x < Reconstruction::shown.width - 10; ++x) {
+      all.push_back(texel(image, x, y).x - expected[y * Reconstruction::shown.width + x].x);
+    }
+  }
+  return all;
+}
+
+double mean_magnitude(const std::vector<float>& values) {
+  double sum = 0.0;
+  for (const float value : values) sum += std::abs(value);
+  return sum / static_cast<double>(values.size());
+}
+
+TEST(Reconstruction, JitteredStillConvergesToTheSupersampledImage) {
+  const Texels expected = supersampled(zone_plate(0.0f));
+  double at_first = 0.0;
+  Reconstruction reconstruction({64, 43});
+  render::FloatImage image;
+  for (int i = 0; i < 60; ++i) {
+    image = reconstruction.frame(zone_plate(0.0f), {0, 0});
+    if (i == 0) at_first = mean_magnitude(errors(image, expected));
+  }
+  const double error = mean_magnitude(errors(image, expected));
+  testing::Test::RecordProperty("error", std::to_string(error));
+  EXPECT_LT(error, 0.2 * at_first);
+}
+
+TEST(Reconstruction, MovingZonePlateShimmersHardlyMoreThanAtFullSize) {
+  const auto shimmer = [](VkExtent2D drawn) {
+    Reconstruction reconstruction(drawn);
+    std::vector<float> before;
+    double sum = 0.0;
+    for (int i = 0; i < 24; ++i) {
+      const float moved = 0.37f * static_cast<float>(i);
+      const auto image = reconstruction.frame(zone_plate(moved), {0.37f, 0});
+      std::vector<float> now = errors(image, supersampled(zone_plate(moved)));
+      if (i >= 16) {
+        std::vector<float> change = now;
+        for (std::size_t k = 0; k < now.size(); ++k) change[k] -= before[k];
+        sum += mean_magnitude(change) / 8.0;
+      }
+      before = std::move(now);
+    }
+    return sum;
+  };
+  const double native = shimmer(Reconstruction::shown), drawn_smaller = shimmer({77, 51});
+  testing::Test::RecordProperty("native", std::to_string(native));
+  testing::Test::RecordProperty("smaller", std::to_string(drawn_smaller));
+  EXPECT_LT(drawn_smaller, 1.15 * native) << native;
+}
+
 TEST_F(TemporalAntialiasTest, BicubicHistoryStaysPositiveAtHardEdges) {
   const auto edge = [](float offset) {
     return

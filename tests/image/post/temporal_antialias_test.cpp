@@ -82,6 +82,83 @@ TEST(TemporalAntialias, JitteredStaticViewConvergesToGroundTruth) {
   EXPECT_LT(change, 0.02 * raw_change) << "almost constant";
 }
 
+// What is drawn smaller: the samples of many frames give the image of the full size.
+TEST(TemporalAntialias, ReconstructedStaticViewConvergesToGroundTruth) {
+  const scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
+  Edges full(camera);
+  full.accumulate(200);
+  const render::FloatImage reference = full.capture("accumulated");
+  const double raw = mean_square(reference, full.capture("hdr"));
+  for (const float scale : {0.8f, 0.67f, 0.5f}) {
+    Edges rig(camera);
+    rig.renderer.set_draw_scale(scale);
+    rig.accumulate(100);
+    const render::Frame frame = rig.renderer.render();
+    EXPECT_EQ(frame.width, antialias_width);
+    EXPECT_EQ(frame.height, antialias_height);
+    save_image("reconstructed", frame);
+    const render::FloatImage drawn = rig.capture("hdr");
+    EXPECT_EQ(drawn.width, static_cast<std::uint32_t>(std::lround(scale * antialias_width)));
+    EXPECT_LT(mean_square(reference, rig.capture("temporal_antialias")), 0.5 * raw) << scale;
+  }
+}
+
+// Without antialiasing there is nothing to reconstruct from.
+TEST(TemporalAntialias, SmallerFramesWithoutItShowTheNearestPixels) {
+  const scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
+  protocol::Settings settings = without_noise();
+  settings.antialiasing.temporal = settings.antialiasing.jitter = false;
+  Edges small(camera), rig(camera);
+  small.apply(settings);
+  rig.apply(settings);
+  small.renderer.set_size(antialias_width / 2, antialias_height / 2);
+  rig.renderer.set_draw_scale(0.5f);
+  const render::Frame drawn = small.renderer.render(), frame = rig.renderer.render();
+  ASSERT_EQ(frame.width, antialias_width);
+  ASSERT_EQ(frame.height, antialias_height);
+  for (std::uint32_t y = 0; y < frame.height; ++y) {
+    for (std::uint32_t x = 0; x < frame.width; ++x) {
+      for (std::uint32_t c = 0; c < 3; ++c) {
+        const int expected = drawn.rgba[(y / 2 * drawn.width + x / 2) * 4 + c];
+        EXPECT_NEAR(frame.rgba[(y * frame.width + x) * 4 + c], expected, 1) << x << ", " << y;
+      }
+    }
+  }
+}
+
+TEST(TemporalAntialias, PointsOfSmallerFramesAreTheSameSurfaces) {
+  const scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
+  Edges full(camera), rig(camera);
+  rig.renderer.set_draw_scale(0.5f);
+  full.renderer.render();
+  rig.renderer.render();
+  const glm::vec2 point(0.35f, 0.4f);  // on the sphere
+  const auto expected = full.renderer.pick(point), found = rig.renderer.pick(point);
+  ASSERT_TRUE(expected && *expected && found && *found);
+  EXPECT_EQ((*found)->instance, (*expected)->instance);
+  EXPECT_LT(glm::distance((*found)->position, (*expected)->position), 0.05f);
+  EXPECT_EQ(rig.renderer.inspect(point).size(), full.renderer.inspect(point).size());
+}
+
+// The end of motion: full size continues what was reconstructed, in the denoisers too.
+TEST(TemporalAntialias, HistoriesOutliveAChangeOfTheDrawScale) {
+  const scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
+  Edges rig(camera);
+  protocol::Settings settings = without_noise();
+  settings.shadows.enabled = settings.ambient.occlusion = settings.specular.enabled = true;
+  rig.apply(settings);
+  rig.renderer.set_draw_scale(0.67f);
+  for (int i = 0; i < 24; ++i) rig.renderer.render();
+  const render::FloatImage before = rig.capture("temporal_antialias");
+  rig.renderer.set_draw_scale(1.0f);
+  rig.renderer.render();
+  const double jump = mean_square(before, rig.capture("temporal_antialias"));
+  Edges fresh(camera);
+  fresh.apply(settings);
+  fresh.renderer.render();
+  EXPECT_LT(jump, 0.1 * mean_square(before, fresh.capture("temporal_antialias")));
+}
+
 TEST(TemporalAntialias, StaticViewWithoutJitterIsConstant) {
   Edges rig(look({0, 0, 3}, {0, 0, 0}));
   protocol::Settings settings = without_noise();

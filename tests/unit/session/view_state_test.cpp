@@ -131,41 +131,74 @@ TEST(ShouldDraw, AtFullSpeedWhileRefiningForAnActiveViewer) {
   EXPECT_TRUE(should_draw(ViewState::refining, demand)) << "few of its frames are sent";
 }
 
-/// A slow image of 1280x720 whose camera moved 100 ms ago.
+/// An image of 1280x720 that takes 100 ms at full size, whose camera moved 100 ms ago.
 ResolutionInputs moving_image() {
   return {.now = view_start + 100ms,
           .camera_moved_at = view_start,
           .full = {1280, 720},
           .full_frame_time = 100ms,
-          .motion_scale = 0.5f};
+          .frame_time = 66ms,
+          .least_scale = 0.5f};
 }
 
-TEST(DrawSize, IsReducedWhileTheCameraMovesAndFramesAreSlow) {
+TEST(DrawScale, IsReducedWhileTheCameraMovesAndFramesAreSlow) {
   ResolutionInputs in = moving_image();
-  EXPECT_EQ(draw_size(in), (DrawSize{640, 360}));
+  EXPECT_EQ(draw_scale(in), 0.67f);
   in.now = view_start + final_delay;
-  EXPECT_EQ(draw_size(in), in.full) << "the camera is static";
+  EXPECT_EQ(draw_scale(in), 1.0f) << "the camera is static";
   in.animation_playing = true;
-  EXPECT_EQ(draw_size(in), (DrawSize{640, 360}));
+  EXPECT_EQ(draw_scale(in), 0.67f);
 }
 
-TEST(DrawSize, IsFullForFastFramesSmallImagesAndCaptures) {
+TEST(DrawScale, IsFullForFastFramesSmallImagesAndCaptures) {
   ResolutionInputs fast = moving_image();
   fast.full_frame_time = 66ms;
-  EXPECT_EQ(draw_size(fast), fast.full);
+  EXPECT_EQ(draw_scale(fast), 1.0f);
+  ResolutionInputs unknown = moving_image();
+  unknown.full_frame_time = {};
+  EXPECT_EQ(draw_scale(unknown), 1.0f) << "no moving frame was measured";
   ResolutionInputs small = moving_image();
-  small.full = {640, 360};
-  EXPECT_EQ(draw_size(small), small.full);
+  small.full = {320, 180};
+  EXPECT_EQ(draw_scale(small), 1.0f);
   ResolutionInputs captured = moving_image();
   captured.capture_pending = true;
-  EXPECT_EQ(draw_size(captured), captured.full);
+  EXPECT_EQ(draw_scale(captured), 1.0f);
 }
 
-TEST(DrawSize, IsAtLeastOnePixel) {
+TEST(DrawScale, IsTheLargestStepThatKeepsTheFrameTime) {
   ResolutionInputs in = moving_image();
-  in.full = {1'000'000, 1};
-  in.motion_scale = 0.25f;
-  EXPECT_EQ(draw_size(in), (DrawSize{250'000, 1}));
+  in.full_frame_time = 90ms;
+  EXPECT_EQ(draw_scale(in), 0.8f);
+  in.full_frame_time = 180ms;
+  EXPECT_EQ(draw_scale(in), 0.5f);
+  in.full_frame_time = 10s;
+  EXPECT_EQ(draw_scale(in), 0.5f) << "not below the least scale";
+  in.least_scale = 0.7f;
+  EXPECT_EQ(draw_scale(in), 0.7f);
+  in.least_scale = 1.0f;
+  EXPECT_EQ(draw_scale(in), 1.0f);
+}
+
+TEST(DrawScale, FollowsTheFrameTimeThatIsAskedFor) {
+  ResolutionInputs in = moving_image();
+  in.frame_time = 100ms;
+  EXPECT_EQ(draw_scale(in), 1.0f);
+  in.frame_time = 33ms;
+  EXPECT_EQ(draw_scale(in), 0.5f);
+  in.frame_time = 0ms;
+  in.full_frame_time = 1ms;
+  EXPECT_EQ(draw_scale(in), 0.5f) << "always the least";
+}
+
+TEST(DrawScale, StaysWhereTimesSwing) {
+  ResolutionInputs in = moving_image();
+  in.scale = 0.8f;
+  in.full_frame_time = 105ms;  // 71 ms at 0.8
+  EXPECT_EQ(draw_scale(in), 0.8f);
+  in.full_frame_time = 60ms;
+  EXPECT_EQ(draw_scale(in), 0.8f) << "too near to the limit at full size";
+  in.full_frame_time = 50ms;
+  EXPECT_EQ(draw_scale(in), 1.0f);
 }
 
 }  // namespace

@@ -18,6 +18,8 @@ struct Tile {
 /// Rows of an image, from `top`, which begins a tile, to before `bottom`.
 struct Rows {
   int top, bottom;
+  /// Of these the first `height` of the image.
+  Rows within(int height) const { return {std::min(top, height), std::min(bottom, height)}; }
 };
 
 /// Calls `work(tile)` for all tiles of some rows, on all processors.

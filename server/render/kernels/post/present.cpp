@@ -20,12 +20,15 @@ class Presentation {
 
  public:
   HWY_INLINE explicit Presentation(const PresentJob& job)
-      : job_(job), curve_(static_cast<int>(job.frame.tone_map_curve)), dither_(DU(), 0u, 5u, 0u) {}
+      : job_(job),
+        width_(static_cast<int>(job.constants.shown.x)),
+        curve_(static_cast<int>(job.frame.tone_map_curve)),
+        dither_(DU(), 0u, 5u, 0u) {}
 
   HWY_INLINE void rows(int first, int last) const {
     const int lanes = static_cast<int>(hn::Lanes(d_));
     for (int y = first; y < last; ++y) {
-      for (int x = 0; x < job_.width; x += lanes) block(std::min(x, job_.width - lanes), y);
+      for (int x = 0; x < width_; x += lanes) block(std::min(x, width_ - lanes), y);
     }
   }
 
@@ -36,9 +39,27 @@ class Presentation {
     return {t.x, t.y, t.z};
   }
 
+  /// Of the nearest pixels that were drawn.
+  HWY_INLINE Triple<V> nearest(int x, int y) const {
+    const glm::uvec2 shown = job_.constants.shown, drawn = job_.constants.drawn;
+    if (shown == drawn) return load(job_.radiance, x, y);
+    const DU du;
+    const auto twice = hn::ShiftLeft<1>(hn::Iota(du, static_cast<std::uint32_t>(x)));
+    const V across = hn::ConvertTo(d_, hn::Add(twice, hn::Set(du, 1u)));
+    // Quotients are multiples of half a step: a quarter more keeps rounding on the right side.
+    const float step = 1.0f / static_cast<float>(shown.x);
+    const V column =
+        hn::MulAdd(across, set(0.5f * step * static_cast<float>(drawn.x)), set(0.25f * step));
+    const hn::RebindToSigned<D> di;
+    const auto row =
+        static_cast<int>((2u * static_cast<unsigned>(y) + 1u) * drawn.y / (2 * shown.y));
+    return gather3(d_, row_of<const float>(job_.radiance, row),
+                   hn::ShiftLeft<2>(hn::ConvertTo(di, column)));
+  }
+
   HWY_INLINE Triple<V> radiance(int x, int y) const {
     if (job_.constants.mean_weight >= 1.0f) return load(job_.accumulated, x, y);
-    const Triple<V> frame = load(job_.radiance, x, y);
+    const Triple<V> frame = nearest(x, y);
     if (job_.constants.mean_weight <= 0.0f) return frame;
     return mix(frame, load(job_.accumulated, x, y), set(job_.constants.mean_weight));
   }
@@ -82,12 +103,13 @@ class Presentation {
 
   const D d_{};
   const PresentJob& job_;
+  int width_;
   int curve_;
   RandomPairs<DU> dither_;
 };
 
 void present_rows(const PresentJob& job, int first, int last) {
-  run_rows<Presentation>(job, job.width, first, last);
+  run_rows<Presentation>(job, static_cast<int>(job.constants.shown.x), first, last);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE
@@ -99,7 +121,7 @@ namespace heliograph::render::kernels {
 HWY_EXPORT(present_rows);
 
 void present(const PresentJob& job) {
-  for_each_band(job.height, [&](int first, int last) {
+  for_each_band(static_cast<int>(job.constants.shown.y), [&](int first, int last) {
     HWY_DYNAMIC_DISPATCH(present_rows)(job, first, last);
   });
 }

@@ -13,6 +13,8 @@ struct PresentBindings {
   gpu::Write<Stage> output;  // rgba8
 };
 struct PresentConstants {
+  glm::uvec2 shown;   // size of the frame that is shown, pixels
+  glm::uvec2 drawn;   // that of `radiance`, whose nearest pixels are shown
   float mean_weight;  // of the accumulated mean in the image that is shown, 0..1
 };
 using PresentJob = FrameJob<PresentBindings, PresentConstants>;

@@ -1,5 +1,7 @@
 #include "render/kernels/post/temporal_antialias.hpp"
 
+#include <cmath>
+
 #include "render/kernels/simd/rows.hpp"
 
 #undef HWY_TARGET_INCLUDE
@@ -19,6 +21,8 @@ constexpr float edge_depth = 0.05f;
 constexpr float cubic_slope = -0.75f;
 constexpr float most_still = 4.0f;
 constexpr float off_texel_slope = 8.0f;
+constexpr float distance_falloff = 2.0f;
+constexpr float scaled_box = 1.3f;
 
 template <class D>
 class Antialiasing {
@@ -32,27 +36,55 @@ class Antialiasing {
   struct Box {
     Triple<V> low, high;
   };
+  /// Channels of what lies around each pixel that was drawn.
+  enum Around { box_low, box_high = 3, moved_x = 6, moved_y, around_channels };
 
  public:
   HWY_INLINE explicit Antialiasing(const AntialiasJob& job)
-      : job_(job), bounds_(job.width, job.height) {}
+      : job_(job),
+        width_(static_cast<int>(job.constants.shown.x)),
+        height_(static_cast<int>(job.constants.shown.y)),
+        scaled_(width_ != job.width || height_ != job.height),
+        scale_(glm::vec2(job.width, job.height) / glm::vec2(job.constants.shown)),
+        bounds_(width_, height_) {
+    const glm::vec4& unproject = job.frame.unproject;
+    if (scaled_) {
+      jitter_ = -0.5f * glm::vec2(unproject.z, unproject.w) / glm::vec2(unproject) *
+                glm::vec2(job.width, job.height);
+    }
+  }
 
+  /// Rows of the frame that is shown.
   HWY_INLINE void rows(int first, int last) const {
+    const int low = drawn_row(first), high = drawn_row(last - 1) + 1;
     // Compressed colour, and motion with view Z, of the pixels and their neighbours.
-    const BandScratch colors(3, job_.width, first, last, 1);
-    const BandScratch motion(3, job_.width, first, last, 1);
-    for (int y = first - 1; y <= last; ++y) fill(colors, motion, y);
+    const BandScratch colors(3, job_.width, low, high, 1);
+    const BandScratch motion(3, job_.width, low, high, 1);
+    const BandScratch around(around_channels, job_.width, low, high, 0);
+    for (int y = low - 1; y <= high; ++y) fill(colors, motion, y);
     const int lanes = static_cast<int>(hn::Lanes(d_));
-    for (int y = first; y < last; ++y) {
+    for (int y = low; y < high; ++y) {
       const ViewedRow<D> view(job_.frame, y);
       for (int x = 0; x < job_.width; x += lanes) {
-        block(colors, motion, view, std::min(x, job_.width - lanes), y);
+        look_around(colors, motion, view, std::min(x, job_.width - lanes), y, around);
+      }
+    }
+    for (int y = first; y < last; ++y) {
+      for (int x = 0; x < width_; x += lanes) {
+        block(colors, around, std::min(x, width_ - lanes), y);
       }
     }
   }
 
  private:
   HWY_INLINE V set(float value) const { return hn::Set(d_, value); }
+
+  /// Of the sample nearest to a row that is shown.
+  HWY_INLINE int drawn_row(int y) const {
+    if (!scaled_) return y;
+    const float at = (static_cast<float>(y) + 0.5f) * scale_.y + jitter_.y;
+    return std::clamp(static_cast<int>(std::floor(at)), 0, job_.height - 1);
+  }
 
   HWY_INLINE void fill(const BandScratch& colors, const BandScratch& motion, int y) const {
     const int from = std::clamp(y, 0, job_.height - 1);
@@ -170,14 +202,14 @@ class Antialiasing {
       const V at = t * set(static_cast<float>(size));
       return hn::Abs(at - hn::Floor(at) - set(0.5f));
     };
-    return hn::Max(off(u, job_.width), off(v, job_.height));
+    return hn::Max(off(u, width_), off(v, height_));
   }
 
   /// May overshoot; w: of the nearest texel.
   HWY_INLINE Quad<V> sample_history(V u, V v) const {
     const V half = set(0.5f);
-    const V x = hn::MulSub(u, set(static_cast<float>(job_.width)), half);
-    const V y = hn::MulSub(v, set(static_cast<float>(job_.height)), half);
+    const V x = hn::MulSub(u, set(static_cast<float>(width_)), half);
+    const V y = hn::MulSub(v, set(static_cast<float>(height_)), half);
     const V low_x = hn::Floor(x), low_y = hn::Floor(y);
     const V fx = x - low_x, fy = y - low_y;
     const Weights across(fx), down(fy);
@@ -209,14 +241,14 @@ class Antialiasing {
     if constexpr (hn::MaxLanes(D()) == 1) return false;
     const int top = hn::GetLane(hn::MinOfLanes(di_, row));
     const int rows = hn::GetLane(hn::MaxOfLanes(di_, row)) - top;
-    const ColumnWindow<D> window(column, 1, 2, job_.width);
+    const ColumnWindow<D> window(column, 1, 2, width_);
     if (rows > 1 || !window.fits()) return false;
     const V zero = hn::Zero(d_);
     const M lower = hn::RebindMask(d_, hn::Gt(row, hn::Set(di_, top)));
     const typename ColumnWindow<D>::Pick picks[4]{window.pick(-1), window.pick(0), window.pick(1),
                                                   window.pick(2)};
     for (int j = 0; j < 4 + rows; ++j) {
-      const int y = std::clamp(top + j - 1, 0, job_.height - 1);
+      const int y = std::clamp(top + j - 1, 0, height_ - 1);
       const auto texels = window.load(row_of<const float>(job_.history, y));
       Triple<V> line{zero, zero, zero};
       for (int i = 0; i < 4; ++i) line = line + window.texels(texels, picks[i]) * across.w[i];
@@ -241,33 +273,82 @@ class Antialiasing {
     }
     variance = variance * ninth;
     const Triple<V> deviation{hn::Sqrt(variance.x), hn::Sqrt(variance.y), hn::Sqrt(variance.z)};
-    const Triple<V> half_extent = deviation * set(job_.constants.clip);
+    const Triple<V> half_extent =
+        deviation * set(scaled_ ? scaled_box * job_.constants.clip : job_.constants.clip);
     return {mean - half_extent, mean + half_extent};
   }
 
-  HWY_INLINE void block(const BandScratch& colors, const BandScratch& motion,
-                        const ViewedRow<D>& view, int x, int y) const {
-    const V zero = hn::Zero(d_), one = set(1.0f);
-    const Quad<V> center = load4(d_, row_of<const float>(job_.radiance, y) + 4 * x);
-    float* const out = row_of<float>(job_.resolved, y) + 4 * x;
+  HWY_INLINE void look_around(const BandScratch& colors, const BandScratch& motion,
+                              const ViewedRow<D>& view, int x, int y,
+                              const BandScratch& around) const {
+    const Box box = box_about(colors, x, y);
     const Pair<V> moved = edge_motion(motion, view, x, y);
-    const V u =
-        hn::Iota(d_, static_cast<float>(x) + 0.5f) / set(static_cast<float>(job_.width)) + moved.x;
-    const V v = set((static_cast<float>(y) + 0.5f) / static_cast<float>(job_.height)) + moved.y;
+    const V channels[around_channels]{box.low.x,  box.low.y,  box.low.z, box.high.x,
+                                      box.high.y, box.high.z, moved.x,   moved.y};
+    for (int i = 0; i < around_channels; ++i) hn::StoreU(channels[i], d_, around.row(i, y) + x);
+  }
+
+  /// The samples nearest to pixels that are shown.
+  struct Nearest {
+    int x, row;  // of the first, where frames are drawn at the size that is shown
+    VI column;
+    V weight;  // 1 at the centre of the pixel
+  };
+  HWY_INLINE Nearest nearest_samples(int x, int y) const {
+    const V one = set(1.0f);
+    if (!scaled_) return {x, y, hn::Zero(di_), one};
+    const V center = hn::Iota(d_, static_cast<float>(x) + 0.5f) * set(scale_.x);
+    const V last = set(static_cast<float>(job_.width - 1));
+    const V at = hn::Min(hn::Max(hn::Floor(center + set(jitter_.x)), hn::Zero(d_)), last);
+    const int row = drawn_row(y);
+    const V off_x = (at + set(0.5f - jitter_.x) - center) * set(1.0f / scale_.x);
+    const float center_y = (static_cast<float>(y) + 0.5f) * scale_.y;
+    const float off_y = (static_cast<float>(row) + 0.5f - jitter_.y - center_y) / scale_.y;
+    const V far = hn::MulAdd(off_x, off_x, set(off_y * off_y)) * set(distance_falloff);
+    const V weight = one / hn::MulAdd(far, hn::MulAdd(far, set(0.5f), one), one);
+    return {x, row, hn::ConvertTo(di_, at), weight};
+  }
+  HWY_INLINE V read(const BandScratch& scratch, int channel, const Nearest& at) const {
+    const float* const row = scratch.row(channel, at.row);
+    return scaled_ ? hn::GatherIndex(d_, row, at.column) : hn::LoadU(d_, row + at.x);
+  }
+  HWY_INLINE Triple<V> read_three(const BandScratch& scratch, int channel,
+                                  const Nearest& at) const {
+    return {read(scratch, channel, at), read(scratch, channel + 1, at),
+            read(scratch, channel + 2, at)};
+  }
+  HWY_INLINE Triple<V> radiance(const Nearest& at) const {
+    const float* const row = row_of<const float>(job_.radiance, at.row);
+    if (scaled_) return gather3(d_, row, hn::ShiftLeft<2>(at.column));
+    const Quad<V> t = load4(d_, row + 4 * at.x);
+    return {t.x, t.y, t.z};
+  }
+
+  HWY_INLINE void block(const BandScratch& colors, const BandScratch& around, int x, int y) const {
+    const V zero = hn::Zero(d_), one = set(1.0f);
+    float* const out = row_of<float>(job_.resolved, y) + 4 * x;
+    const Nearest nearest = nearest_samples(x, y);
+    const V u = hn::Iota(d_, static_cast<float>(x) + 0.5f) / set(static_cast<float>(width_)) +
+                read(around, moved_x, nearest);
+    const V v = set((static_cast<float>(y) + 0.5f) / static_cast<float>(height_)) +
+                read(around, moved_y, nearest);
     // There is no history outside the frame.
     M known =
         hn::And(hn::And(hn::Ge(u, zero), hn::Le(u, one)), hn::And(hn::Ge(v, zero), hn::Le(v, one)));
+    const Triple<V> alone = radiance(nearest);
+    const Quad<V> first{alone.x, alone.y, alone.z, nearest.weight};
     if (job_.frame.history_invalid != 0 || hn::AllFalse(d_, known)) {
-      store4(d_, Quad<V>{center.x, center.y, center.z, one}, out);
+      store4(d_, first, out);
       return;
     }
-    const Box box = box_about(colors, x, y);
+    const Box box{read_three(around, box_low, nearest), read_three(around, box_high, nearest)};
     const Quad<V> found = sample_history(clamped(u, 0.0f, 1.0f), clamped(v, 0.0f, 1.0f));
     const Triple<V> old = compressed({found.x, found.y, found.z});
     const V still = hn::Max(hn::NegMulAdd(set(off_texel_slope), off_texel(u, v), one), zero);
-    const V most = hn::MulAdd(still, set(most_still - 1.0f), one);
-    const V frames = hn::Min(found.w + one, most * set(1.0f / job_.constants.blend));
-    V weight = one / frames;
+    const float most_moving = (1.0f / job_.constants.blend - 1.0f) * scale_.x * scale_.y;
+    const V most = hn::MulAdd(still, set(most_still - 1.0f), one) * set(most_moving);
+    const V samples = hn::Min(found.w, most) + nearest.weight;
+    V weight = nearest.weight / samples;
     if (job_.constants.anti_flicker > 0.0f) {
       const V margin = hn::Min(hn::Abs(old.x - box.low.x), hn::Abs(box.high.x - old.x));
       const V span = hn::Max(margin + box.high.x - box.low.x, set(1e-6f));
@@ -276,17 +357,17 @@ class Antialiasing {
     const Triple<V> held{hn::Min(hn::Max(old.x, box.low.x), box.high.x),
                          hn::Min(hn::Max(old.y, box.low.y), box.high.y),
                          hn::Min(hn::Max(old.z, box.low.z), box.high.z)};
-    const Triple<V> blended = mix(held, load(colors, x, y), weight);
-    const Triple<V> result = expanded(blended);
-    store4(d_,
-           select(known, Quad<V>{result.x, result.y, result.z, frames},
-                  Quad<V>{center.x, center.y, center.z, one}),
-           out);
+    const Triple<V> result = expanded(mix(held, read_three(colors, 0, nearest), weight));
+    store4(d_, select(known, Quad<V>{result.x, result.y, result.z, samples}, first), out);
   }
 
   const D d_{};
   const DI di_{};
   const AntialiasJob& job_;
+  int width_, height_;  // of what is shown
+  bool scaled_;
+  glm::vec2 scale_;  // of what is drawn
+  glm::vec2 jitter_{0.0f};
   Bounds<D> bounds_;
 };
 
@@ -303,7 +384,7 @@ namespace heliograph::render::kernels {
 HWY_EXPORT(antialias_rows);
 
 void temporal_antialias(const AntialiasJob& job) {
-  for_each_band(job.height, [&](int first, int last) {
+  for_each_band(static_cast<int>(job.constants.shown.y), [&](int first, int last) {
     HWY_DYNAMIC_DISPATCH(antialias_rows)(job, first, last);
   });
 }

@@ -8,11 +8,13 @@ namespace heliograph::render::kernels {
 /// shaders/post/temporal_antialias.comp
 template <class Stage>
 struct AntialiasBindings {
-  gpu::Read<Stage> radiance, motion, history;  // rgba32f
+  gpu::Read<Stage> radiance, motion;  // rgba32f, of the size that is drawn
+  gpu::Read<Stage> history;           // of that which is shown
   gpu::ReadBuffer<Stage, shared::ExposureState> exposure;
-  gpu::Write<Stage> resolved;  // rgba32f; a: frames in the mean
+  gpu::Write<Stage> resolved;  // rgba32f; a: samples in the mean
 };
 struct AntialiasConstants {
+  glm::uvec2 shown;    // size of the history and the result, pixels
   float blend;         // least weight of the new frame
   float clip;          // half width of the box in standard deviations
   float anti_flicker;  // 1: on

@@ -85,7 +85,7 @@ class BlendedSurfaces {
                                              .surface = surface_,
                                              .specular = specular_})
         .constants([in = in_] { return kernels::BlendedRaysConstants{blended_region(in)}; })
-        .dispatch(plan_.extent())
+        .dispatch(gpu::each_pixel())
         .host(kernels::blended_rays, in_.constants);
     for (std::uint32_t round = 0; round < most_blended; ++round) {
       in_.tracer.trace_closest(plan_, "blended.trace", in_.structure, current, hits_);
@@ -138,7 +138,7 @@ class BlendedSurfaces {
                                              .specular = specular_,
                                              .transmittance = transmittance_,
                                              .frame = frame})
-        .dispatch(plan_.extent())
+        .dispatch(gpu::each_pixel())
         .host(kernels::blended_over);
   }
 

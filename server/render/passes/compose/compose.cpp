@@ -44,7 +44,7 @@ Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbu
       .constants([&s = in.settings.specular, reflects] {
         return kernels::ComposeConstants{reflects ? s.max_roughness : -1.0f};
       })
-      .dispatch(plan.extent())
+      .dispatch(gpu::each_pixel())
       .host([in](const kernels::ComposeJob::Pass& pass) {
         const auto lights = frame_lights(in.tables.lights, in.constants);
         const bool separate_sun = in.settings.environment.separate_sun;

@@ -11,7 +11,7 @@ gpu::ImageRef draw_skybox(gpu::FramePlan& plan, const FrameInputs& in, const GBu
   const auto background = plan.image(skybox_buffers.radiance.name, VK_FORMAT_R32G32B32A32_SFLOAT);
   plan.pass("skybox", in.program(shaders::skybox))
       .bind<kernels::SkyboxBindings>({.motion = gbuffer.motion, .background = background})
-      .dispatch(plan.extent())
+      .dispatch(gpu::each_pixel())
       .host([in](const kernels::SkyboxJob::Pass& pass) {
         // What the eye sees is the environment as it was read: with its sun.
         kernels::skybox({pass, in.constants, kernels::view_map(*in.moving.environment().source())});

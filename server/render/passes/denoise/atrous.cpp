@@ -30,7 +30,7 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& g
                                         .signal = from,
                                         .filtered = to})
         .constants([constants = config.constants, shape] { return constants(shape()); })
-        .dispatch(plan.extent())
+        .dispatch(gpu::each_pixel())
         .host(config.kernel, in.constants);
   };
   for (int level = 0; level <= last; ++level) {

@@ -17,7 +17,7 @@ gpu::ImageRef compress(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRe
       .read(noisy)
       .write(compressed)
       .constants([&s = in.settings.reinhard] { return s.multiplier; })
-      .dispatch(plan.extent());
+      .dispatch(gpu::each_pixel());
   return compressed;
 }
 
@@ -34,7 +34,7 @@ gpu::ImageRef expand(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef 
       .constants([&s = in.settings.reinhard] {
         return Constants{s.multiplier, s.paper_weight, s.mode == protocol::Reinhard::exact};
       })
-      .dispatch(plan.extent());
+      .dispatch(gpu::each_pixel());
   return expanded;
 }
 

@@ -55,7 +55,7 @@ gpu::ImageRef combine_visibility(gpu::FramePlan& plan, const FrameInputs& in, gp
       plan.image(denoise_visibility_buffers.noisy.name, VK_FORMAT_R32G32B32A32_SFLOAT);
   plan.pass("visibility.combine", in.program(shaders::visibility_combine))
       .bind<kernels::CombineBindings>({.shadows = shadows, .ambient = ambient, .visibility = noisy})
-      .dispatch(plan.extent())
+      .dispatch(gpu::each_pixel())
       .host(kernels::visibility_combine);
   return noisy;
 }

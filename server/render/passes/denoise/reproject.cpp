@@ -25,7 +25,7 @@ Guide reproject(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuf
       .constants([&s = in.settings.reprojection] {
         return shared::ReprojectConstants{s.depth_tolerance, s.normal_tolerance};
       })
-      .dispatch(plan.extent())
+      .dispatch(gpu::each_pixel())
       .host(kernels::reproject, in.constants);
   return guide;
 }

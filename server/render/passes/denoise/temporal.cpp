@@ -17,13 +17,12 @@ gpu::ImageRef measure_percentiles(gpu::FramePlan& plan, const Guide& guide, gpu:
                                   const BufferDescription& buffer, gpu::ProgramSource program,
                                   protocol::Rectification rectification) {
   if (rectification != protocol::Rectification::percentile) return guide.reprojection;
-  const VkExtent2D tiles{(plan.extent().width + 7) / 8, (plan.extent().height + 7) / 8};
-  const auto percentiles = plan.image(buffer.name, four_floats, 0, tiles);
+  const auto percentiles = plan.image(buffer.name, four_floats, 0, gpu::FrameSize::squares(8));
   plan.pass(std::string(buffer.name), std::move(program))
       .read(guide.surface)
       .read(noisy)
       .write(percentiles)
-      .dispatch(plan.extent());
+      .dispatch(gpu::each_pixel());
   return percentiles;
 }
 
@@ -77,7 +76,7 @@ AccumulatedSignal accumulate_visibility(gpu::FramePlan& plan, const FrameInputs&
            .history_length = history_length.current,
            .fast_history = fast_history.current})
       .constants(constants)
-      .dispatch(plan.extent())
+      .dispatch(gpu::each_pixel())
       .host(kernels::visibility_temporal, in.constants)
       .host_when(kernels_know(settings.rectification));
   if (rectifies_after(settings.rectification)) {
@@ -87,7 +86,7 @@ AccumulatedSignal accumulate_visibility(gpu::FramePlan& plan, const FrameInputs&
                                          .signal = signal,
                                          .history_length = history_length.current})
         .constants(constants)
-        .dispatch(plan.extent())
+        .dispatch(gpu::each_pixel())
         .host(kernels::visibility_rectify)
         // Visibility does not depend on the view: it changes only where geometry or lights move.
         .when([&settings, &motion = in.scene_motion] {
@@ -136,7 +135,7 @@ AccumulatedSignal accumulate_specular(gpu::FramePlan& plan, const FrameInputs& i
                                                 .history_length = history_length.current,
                                                 .fast_history = fast_history.current})
       .constants(constants)
-      .dispatch(plan.extent())
+      .dispatch(gpu::each_pixel())
       .host(kernels::specular_temporal, in.constants)
       .host_when(kernels_know(settings.rectification));
   if (rectifies_after(settings.rectification)) {
@@ -146,7 +145,7 @@ AccumulatedSignal accumulate_specular(gpu::FramePlan& plan, const FrameInputs& i
                                          .signal = signal,
                                          .history_length = history_length.current})
         .constants(constants)
-        .dispatch(plan.extent())
+        .dispatch(gpu::each_pixel())
         .host(kernels::specular_rectify)
         // A static view's second frame is the first that samples every pixel.
         .when([&settings, &clock = in.clock] {
@@ -168,7 +167,7 @@ gpu::PassBuilder variance_pass(gpu::FramePlan& plan, const FrameInputs& in, cons
                                                .history_length = accumulated.history_length,
                                                .signal = accumulated.signal})
       .constants([in, &settings] { return temporal_constants(in, settings); })
-      .dispatch(plan.extent())
+      .dispatch(gpu::each_pixel())
       .when([&settings] { return settings.spatial_variance_frames > 0; });
   return pass;
 }

@@ -86,7 +86,7 @@ GBuffer declare_gbuffer(gpu::FramePlan& plan, std::uint32_t features) {
   gbuffer.surface = history(buffers.surface, 2, gbuffer.previous_surface);
   const bool layered = (features & shared::scene_layers) != 0;
   gbuffer.layers = plan.image("gbuffer.layers", gbuffer_layers_format, attachment,
-                              layered ? plan.extent() : VkExtent2D{1, 1});
+                              layered ? gpu::each_pixel() : gpu::FrameSize(1, 1));
   gbuffer.motion = history(buffers.motion, 3, gbuffer.previous_motion);
   gbuffer.emissive = image(buffers.emissive, 4);
   gbuffer.depth_slope = image(buffers.depth_slope, 5);

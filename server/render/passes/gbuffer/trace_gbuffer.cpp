@@ -17,7 +17,7 @@ using formats::storage;
 void camera_rays(gpu::FramePlan& plan, const FrameInputs& in, const tracing::RayStream& rays) {
   plan.pass("gbuffer.rays", in.program(shaders::gbuffer_rays))
       .bind<kernels::GBufferRaysBindings>({.count = rays.count, .rays = rays.rays})
-      .dispatch(plan.extent())
+      .dispatch(gpu::each_pixel())
       .host(kernels::gbuffer_rays, in.constants);
 }
 

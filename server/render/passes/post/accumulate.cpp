@@ -37,12 +37,13 @@ gpu::History accumulate(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageR
       .constants([in] {
         return kernels::AccumulateConstants{1.0f / static_cast<float>(samples_of_mean(in))};
       })
-      .dispatch(plan.extent())
+      .dispatch(gpu::each_pixel())
       .host(kernels::accumulate);
   return history;
 }
 
 float mean_weight(const FrameInputs& in) {
+  if (in.is_reduced()) return 0.0f;
   const protocol::Settings& settings = in.settings;
   if (settings.reference.use == protocol::ReferenceUse::always || !is_filtered(settings) ||
       settings.accumulation.blend_samples == 0) {

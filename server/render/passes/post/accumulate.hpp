@@ -27,7 +27,8 @@ gpu::History accumulate(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageR
 
 /// The weight of the mean in the image that this frame shows, 0..1. While the view moves, the
 /// denoised frame is shown; the longer the view is static, the more the mean, which converges to
-/// the ground truth. `accumulation.blend_samples` samples after the first both weigh the same.
+/// the ground truth. `accumulation.blend_samples` samples after the first both weigh the same. 0 in
+/// frames that are drawn smaller than they are shown, as the mean is.
 float mean_weight(const FrameInputs& in);
 
 }  // namespace heliograph::render

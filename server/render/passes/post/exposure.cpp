@@ -22,7 +22,7 @@ void meter(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef hdr, gpu::
   plan.pass("exposure.meter", in.program(shaders::exposure_meter))
       .bind<kernels::ExposureMeterBindings>({.hdr = hdr, .mean = mean, .histogram = histogram})
       .constants([in] { return kernels::ExposureMeterConstants{mean_weight(in)}; })
-      .dispatch({(plan.extent().width + 1) / 2, (plan.extent().height + 1) / 2})
+      .dispatch(gpu::FrameSize::squares(2))
       .host(kernels::exposure_meter);
 }
 

@@ -9,12 +9,16 @@ namespace heliograph::render {
 
 gpu::ImageRef present(gpu::FramePlan& plan, const FrameInputs& in, const Exposure& exposure,
                       gpu::ImageRef radiance, gpu::ImageRef mean) {
-  const auto output = plan.image(present_buffers.output.name, VK_FORMAT_R8G8B8A8_UNORM);
+  const auto output =
+      plan.image(present_buffers.output.name, VK_FORMAT_R8G8B8A8_UNORM, 0, in.shown);
   plan.pass("present", in.program(shaders::present))
       .bind<kernels::PresentBindings>(
           {.radiance = radiance, .accumulated = mean, .exposure = exposure.state, .output = output})
-      .constants([in] { return kernels::PresentConstants{mean_weight(in)}; })
-      .dispatch(plan.extent())
+      .constants([in, &plan, radiance] {
+        return kernels::PresentConstants{size_of(in.shown), size_of(plan.drawn(radiance)),
+                                         mean_weight(in)};
+      })
+      .dispatch(in.shown)
       .host(kernels::present, in.constants);
   return output;
 }

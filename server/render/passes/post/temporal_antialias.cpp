@@ -10,18 +10,18 @@ gpu::ImageRef temporal_antialias(gpu::FramePlan& plan, const FrameInputs& in,
                                  const GBuffer& gbuffer, const Exposure& exposure,
                                  gpu::ImageRef radiance) {
   if (!in.settings.antialiasing.temporal) return radiance;
-  const auto history =
-      plan.history(temporal_antialias_buffers.resolved.name, VK_FORMAT_R32G32B32A32_SFLOAT);
+  const auto history = plan.history(temporal_antialias_buffers.resolved.name,
+                                    VK_FORMAT_R32G32B32A32_SFLOAT, 0, in.shown);
   plan.pass("temporal_antialias", in.program(shaders::temporal_antialias))
       .bind<kernels::AntialiasBindings>({.radiance = radiance,
                                          .motion = gbuffer.motion,
                                          .history = history.previous,
                                          .exposure = exposure.state,
                                          .resolved = history.current})
-      .constants([&s = in.settings.antialiasing] {
-        return kernels::AntialiasConstants{s.blend, s.clip, s.anti_flicker ? 1.0f : 0.0f};
+      .constants([&s = in.settings.antialiasing, shown = size_of(in.shown)] {
+        return kernels::AntialiasConstants{shown, s.blend, s.clip, s.anti_flicker ? 1.0f : 0.0f};
       })
-      .dispatch(plan.extent())
+      .dispatch(in.shown)
       .host(kernels::temporal_antialias, in.constants);
   return history.current;
 }

@@ -49,7 +49,7 @@ class Wavefront {
         .write(rays_.rays)
         .write(paths_)
         .write(radiance_)
-        .dispatch(plan_.extent());
+        .dispatch(gpu::each_pixel());
   }
 
   /// The hybrid's paths: the surface in view, one reflection, and nothing beyond.
@@ -71,7 +71,7 @@ class Wavefront {
           .write(specular.rays)
           .read_write(radiance_)
           .constants(constants(in_, round, rounds))
-          .dispatch(plan_.extent());
+          .dispatch(gpu::each_pixel());
     }
     add(shadows_);
     add(ambient);
@@ -84,7 +84,7 @@ class Wavefront {
         .write(shadows_.rays)
         .read_write(radiance_)
         .constants(constants(in_, rounds, rounds))
-        .dispatch(plan_.extent());
+        .dispatch(gpu::each_pixel());
     add(shadows_);
   }
 
@@ -103,7 +103,7 @@ class Wavefront {
           .write(sky.rays)
           .read_write(radiance_)
           .constants(constants(in_, round, bounces))
-          .dispatch(plan_.extent());
+          .dispatch(gpu::each_pixel());
       add(shadows_);
       add(sky);
     }
@@ -133,7 +133,7 @@ class Wavefront {
         .read(lights.rays)
         .read(occluded_)
         .read_write(radiance_)
-        .dispatch(plan_.extent());
+        .dispatch(gpu::each_pixel());
   }
 
   gpu::FramePlan& plan_;

@@ -21,16 +21,16 @@ using formats::storage;
 struct Target {
   gpu::ImageRef radiance;
   std::optional<gpu::ImageRef> directions;
-  VkExtent2D extent;
+  gpu::FrameSize size;
   std::int32_t scale;
 };
 
 Target make_target(gpu::FramePlan& plan, bool half) {
   const auto& buffers = specular_buffers;
-  if (!half) return {plan.image(buffers.radiance.name, four_floats), {}, plan.extent(), 1};
-  const VkExtent2D extent{(plan.extent().width + 1) / 2, (plan.extent().height + 1) / 2};
-  return {plan.image(buffers.half_radiance.name, four_floats, 0, extent),
-          plan.image(buffers.half_directions.name, four_floats, 0, extent), extent, 2};
+  if (!half) return {plan.image(buffers.radiance.name, four_floats), {}, gpu::each_pixel(), 1};
+  const auto half_size = gpu::FrameSize::squares(2);
+  return {plan.image(buffers.half_radiance.name, four_floats, 0, half_size),
+          plan.image(buffers.half_directions.name, four_floats, 0, half_size), half_size, 2};
 }
 
 tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
@@ -38,8 +38,8 @@ tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
                                  std::optional<gpu::ImageRef> planned) {
   const std::uint32_t features = in.scene.features;
   const auto height = static_cast<std::uint32_t>(rows.bottom - rows.top);
-  const auto rays =
-      declare_rays(plan, "specular", target.extent.width * height, tracing::RayKind::reflection);
+  const auto rays = declare_rays(plan, "specular", target.size.of(plan.extent()).width * height,
+                                 tracing::RayKind::reflection);
   const auto& shader = target.directions ? shaders::specular_rays_half : shaders::specular_rays;
   begin_rays(plan, in, "specular", rays);
   plan.pass("specular.rays", in.program(shader, features))
@@ -56,7 +56,7 @@ tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
         return kernels::SpecularRaysConstants{in.settings.specular.max_roughness,
                                               has_plan && leaves_samples_out(in)};
       })
-      .dispatch(target.extent)
+      .dispatch(target.size)
       .host([in, rows](const kernels::SpecularRaysJob::Pass& pass) {
         kernels::specular_rays(
             {pass, in.constants, kernels::has_layers(in.scene.features), in.lobe_tables(), rows});
@@ -137,7 +137,7 @@ gpu::ImageRef upsample(gpu::FramePlan& plan, const FrameInputs& in, const GBuffe
       .read(*half.directions)
       .write(radiance)
       .constants([&s = in.settings.specular] { return s.max_roughness; })
-      .dispatch(plan.extent());
+      .dispatch(gpu::each_pixel());
   return radiance;
 }
 
@@ -147,7 +147,7 @@ gpu::ImageRef trace_specular(gpu::FramePlan& plan, const FrameInputs& in, const 
                              std::optional<gpu::ImageRef> planned) {
   const Target target = make_target(plan, in.settings.specular.half_resolution);
   if (target.directions) planned.reset();
-  for (const kernels::Rows rows : ray_strips(plan, target.extent)) {
+  for (const kernels::Rows rows : ray_strips(plan, target.size.of(plan.extent()))) {
     const auto rays = generate_rays(plan, in, gbuffer, target, rows, planned);
     trace_and_shade(plan, in, "specular", rays, gbuffer, target);
   }
@@ -160,12 +160,12 @@ void trace_reflections(gpu::FramePlan& plan, const FrameInputs& in, const std::s
   GBuffer reflecting;
   reflecting.surface = surface;
   reflecting.motion = distance;
-  trace_and_shade(plan, in, name, rays, reflecting, {radiance, {}, plan.extent(), 1});
+  trace_and_shade(plan, in, name, rays, reflecting, {radiance, {}, gpu::each_pixel(), 1});
 }
 
 void add_unoccluded_light(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
                           const tracing::RayStream& rays, gpu::ImageRef radiance) {
-  resolve_lights(plan, in, name, rays, {radiance, {}, plan.extent(), 1});
+  resolve_lights(plan, in, name, rays, {radiance, {}, gpu::each_pixel(), 1});
 }
 
 }  // namespace heliograph::render

@@ -62,7 +62,7 @@ gpu::ImageRef plan_samples(gpu::FramePlan& plan, const FrameInputs& in, const GB
                                             .visibility = previous.visibility,
                                             .planned = planned})
       .constants([in] { return plan_constants(in); })
-      .dispatch(plan.extent())
+      .dispatch(gpu::each_pixel())
       .host(kernels::sampling_plan, in.constants)
       .when([in] { return leaves_samples_out(in); });
   return planned;

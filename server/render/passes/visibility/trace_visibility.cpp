@@ -33,7 +33,7 @@ class VisibilityTrace {
       const auto rays = declare_rays(plan_, name_, plan_.extent().width * height, kind_);
       begin_rays(plan_, in_, name_, rays);
       gpu::PassBuilder pass = plan_.pass(name_ + ".rays", program);
-      pass.dispatch(plan_.extent()).when([&constants = in_.constants, flag] {
+      pass.dispatch(gpu::each_pixel()).when([&constants = in_.constants, flag] {
         return (constants.flags & flag) != 0;
       });
       generate(pass, rays, rows);

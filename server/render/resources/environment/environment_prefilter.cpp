@@ -99,7 +99,7 @@ EnvironmentMaps prefilter_environment(const gpu::Device& device, const Programs&
   plan.pass("environment.cube", programs.compute(shaders::environment_cube))
       .read(map)
       .write(source_levels[0])
-      .dispatch(plan.extent(), 6);
+      .dispatch(gpu::each_pixel(), 6);
   for (std::uint32_t level = 1; level < cube_levels; ++level) {
     plan.pass("environment.mip", programs.compute(shaders::environment_mip))
         .read(source_levels[level - 1])
