@@ -69,12 +69,12 @@ History FramePlan::history(std::string_view name, VkFormat format, VkImageUsageF
   desc.usage = extra_usage | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
   desc.mapped = device_.is_cpu();
   const std::uint32_t current = add(Resource{.name = std::string(name),
-                                             .size = size,
                                              .part = Resource::Part::current,
+                                             .size = size,
                                              .image_desc = desc});
   const std::uint32_t previous = add(Resource{.name = std::string(name) + ".previous",
-                                              .size = size,
                                               .part = Resource::Part::previous,
+                                              .size = size,
                                               .image_desc = std::move(desc)});
   if (!shares_memory_) make_history(current, {});
   return {{current}, {previous}};

@@ -11,8 +11,8 @@ void FramePlan::set_drawn(VkExtent2D drawn) {
   }
   if (drawn.width == drawn_.width && drawn.height == drawn_.height) return;
   for (const Resource& resource : resources_) {
-    const auto& images = resource.images;
     if (resource.part != Resource::Part::current || !resource.size.follows_frame()) continue;
+    const auto& images = resource.owned_images;
     rescale(device_, *images[parity_ ^ 1], *images[parity_], resource.size.of(drawn_),
             resource.size.of(drawn));
   }

@@ -17,8 +17,8 @@ struct FramePlan::Resource {
   enum class Part { none, current, previous };
 
   std::string name;
-  FrameSize size{0, 0};  // of an image
   Part part = Part::none;
+  FrameSize size{0, 0};  // of an image
   // By parity of the frame; both the same except for histories, and for what shares their memory.
   std::array<const Image*, 2> images{};
   std::array<const Buffer*, 2> buffers{};

@@ -57,8 +57,7 @@ void CompiledFrame::list_buffers() {
 
 std::optional<CompiledFrame::DrawnImage> CompiledFrame::find(std::string_view buffer) const {
   for (const auto& view : plan.views()) {
-    if (view.name != buffer) continue;
-    return plan.holds(view.image) ? std::optional(latest(view.image)) : std::nullopt;
+    if (view.name == buffer && plan.holds(view.image)) return latest(view.image);
   }
   return std::nullopt;
 }

@@ -25,7 +25,7 @@ struct CompiledFrame {
     VkExtent2D drawn;
   };
   DrawnImage latest(gpu::ImageRef image) const { return {plan.latest(image), plan.drawn(image)}; }
-  /// That of a name, if there is one and it was kept.
+  /// That of a name, if there is one that was kept.
   std::optional<DrawnImage> find(std::string_view buffer) const;
 
   FrameInputs inputs;

@@ -145,7 +145,8 @@ void specular_rays(const SpecularRaysJob& job) {
   const auto cells = [scale](std::uint32_t size) {
     return (static_cast<int>(size) + scale - 1) / scale;
   };
-  for_each_tile(cells(job.frame.extent.x), cells(job.frame.extent.y), job.rows, [&](const Tile& tile) {
+  const Rows rows = job.rows.within(cells(job.frame.extent.y));
+  for_each_tile(cells(job.frame.extent.x), rows, [&](const Tile& tile) {
     HWY_DYNAMIC_DISPATCH(make_tile)(job, tile);
   });
   job.rays.end();

@@ -137,14 +137,14 @@ HWY_EXPORT(shadow_ray_tile);
 HWY_EXPORT(ambient_ray_tile);
 
 void shadows_rays(const ShadowRaysJob& job) {
-  for_each_tile(job.width, job.height, job.rows, [&](const Tile& tile) {
+  for_each_tile(job.width, job.rows.within(job.height), [&](const Tile& tile) {
     HWY_DYNAMIC_DISPATCH(shadow_ray_tile)(job, tile);
   });
   job.rays.end();
 }
 
 void ambient_rays(const AmbientRaysJob& job) {
-  for_each_tile(job.width, job.height, job.rows, [&](const Tile& tile) {
+  for_each_tile(job.width, job.rows.within(job.height), [&](const Tile& tile) {
     HWY_DYNAMIC_DISPATCH(ambient_ray_tile)(job, tile);
   });
   job.rays.end();

@@ -20,11 +20,11 @@ namespace {
 /// Histories are measured in seconds. After a pause the time since the last frame means nothing.
 constexpr float max_frame_seconds = 1.0f;
 constexpr std::chrono::seconds retry_delay{1};
-/// Frames of static views trace every sample: about how much longer they take than moving ones.
-constexpr int refining_frame_factor = 2;
 /// Frames keep their buffers for so long after one was read: another one often follows, and the
 /// change takes as long as a frame.
 constexpr std::chrono::seconds keep_buffers_after{10};
+/// Frames of static views trace every sample: about how much longer they take than moving ones.
+constexpr int refining_frame_factor = 2;
 
 std::uint32_t microseconds_of(Clock::duration duration) {
   return static_cast<std::uint32_t>(duration_cast<microseconds>(duration).count());
@@ -270,6 +270,13 @@ void SessionView::adopt_draw_scale() {
                              .capture_pending = readers_.has_captures()}));
 }
 
+/// What will be read after a step is not known before it.
+void SessionView::keep_buffers() {
+  if (readers_.read_buffers()) buffers_read_at_ = Clock::now();
+  renderer_->keep_buffers(session_->timeline().in_lockstep() ||
+                          Clock::now() < buffers_read_at_ + keep_buffers_after);
+}
+
 /// The path traced reference is not reconstructed: where it is shown alone, frames are smaller.
 void SessionView::set_draw_scale(float scale) {
   const bool reference = state_.settings.reference.use == protocol::ReferenceUse::always;
@@ -291,13 +298,6 @@ void SessionView::measure_frame(ViewState state, Clock::duration taken) {
   } else if (!known) {
     full_frame_time_ = full / refining_frame_factor;
   }
-}
-
-/// What will be read after a step is not known before it.
-void SessionView::keep_buffers() {
-  if (readers_.read_buffers()) buffers_read_at_ = Clock::now();
-  renderer_->keep_buffers(session_->timeline().in_lockstep() ||
-                          Clock::now() < buffers_read_at_ + keep_buffers_after);
 }
 
 bool SessionView::is_full_size() const {

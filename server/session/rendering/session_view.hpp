@@ -68,9 +68,9 @@ class SessionView {
   void adopt_edits(const RenderState& before);
   void adopt_pose();
   void adopt_draw_scale();
+  void keep_buffers();
   void set_draw_scale(float scale);
   void measure_frame(ViewState state, Clock::duration taken);
-  void keep_buffers();
   bool is_full_size() const;
   bool needs_frame() const;
   ViewInputs view_inputs() const;

@@ -36,7 +36,7 @@ namespace heliograph::render::kernels {
 HWY_EXPORT(list_lit_tile);
 
 void blended_lit(const BlendedLitJob& job) {
-  for_each_tile(job.width, job.height, [&](const Tile& tile) {
+  for_each_tile(job.width, {0, job.height}, [&](const Tile& tile) {
     HWY_DYNAMIC_DISPATCH(list_lit_tile)(job, tile);
   });
   job.lit.end();

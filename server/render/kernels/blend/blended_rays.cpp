@@ -94,7 +94,7 @@ void blended_rays(const BlendedRaysJob& job) {
       std::fill_n(job.specular.row<float>(row), 4 * width, 0.0f);
     }
   });
-  for_each_tile(job.width, job.height, {0, job.height}, [&](const Tile& tile) {
+  for_each_tile(job.width, {0, job.height}, [&](const Tile& tile) {
     HWY_DYNAMIC_DISPATCH(blended_ray_tile)(job, tile);
   });
   job.rays.end();

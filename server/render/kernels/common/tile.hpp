@@ -18,12 +18,13 @@ struct Tile {
 /// Rows of an image, from `top`, which begins a tile, to before `bottom`.
 struct Rows {
   int top, bottom;
+  /// Of these the first `height` of the image.
+  Rows within(int height) const { return {std::min(top, height), std::min(bottom, height)}; }
 };
 
-/// Calls `work(tile)` for all tiles of those of the rows that an image has, on all processors.
+/// Calls `work(tile)` for all tiles of some rows, on all processors.
 template <class Work>
-void for_each_tile(int width, int height, Rows rows, const Work& work) {
-  rows = {std::min(rows.top, height), std::min(rows.bottom, height)};
+void for_each_tile(int width, Rows rows, const Work& work) {
   const int across = (width + tile_side - 1) / tile_side;
   const int tiles = across * ((rows.bottom - rows.top + tile_side - 1) / tile_side);
   for_each_range(tiles, 1, [&](int first, int last) {

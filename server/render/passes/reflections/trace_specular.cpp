@@ -37,10 +37,9 @@ tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
                                  const GBuffer& gbuffer, const Target& target, kernels::Rows rows,
                                  std::optional<gpu::ImageRef> planned) {
   const std::uint32_t features = in.scene.features;
-  const VkExtent2D most = target.size.of(plan.extent());
   const auto height = static_cast<std::uint32_t>(rows.bottom - rows.top);
-  const auto rays =
-      declare_rays(plan, "specular", most.width * height, tracing::RayKind::reflection);
+  const auto rays = declare_rays(plan, "specular", target.size.of(plan.extent()).width * height,
+                                 tracing::RayKind::reflection);
   const auto& shader = target.directions ? shaders::specular_rays_half : shaders::specular_rays;
   begin_rays(plan, in, "specular", rays);
   plan.pass("specular.rays", in.program(shader, features))
