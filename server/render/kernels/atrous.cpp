@@ -9,7 +9,7 @@
 #define HWY_TARGET_INCLUDE "render/kernels/atrous.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
-#include "render/kernels/simd/atrous/filter.hpp"
+#include "render/kernels/simd/denoise/atrous_filter.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {

@@ -114,7 +114,7 @@ TEST_F(FrameMemory, SharingChangesNoImageOfAnyFrame) {
 }
 
 TEST_F(FrameMemory, PixelOfADefaultFrameTakesTwoThirdsOfItsResources) {
-  EXPECT_LT(bytes_per_pixel({}, true), 640.0);
+  EXPECT_LT(bytes_per_pixel({}, true), 608.0);
   EXPECT_GT(bytes_per_pixel({}, false), 900.0);
 }
 
