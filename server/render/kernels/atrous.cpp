@@ -9,7 +9,7 @@
 #define HWY_TARGET_INCLUDE "render/kernels/atrous.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
-#include "render/kernels/simd/atrous/filter.hpp"
+#include "render/kernels/simd/denoise/atrous_filter.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
@@ -176,10 +176,8 @@ constexpr int parts(int size, int part) {
 /// What is filtered first must exist beside an area, too, in the direction of the second half: few
 /// areas in that direction waste least, and enough for all processors.
 Areas divided(const AtrousHalvesJob& job) {
-  constexpr int strip = 128, band = 90;
-  const bool across_first = job.constants.first.columns > 0;
-  return {across_first ? parts(job.width, strip) : 1,
-          parts(job.height, across_first ? 2 * band : band)};
+  if (job.constants.first.columns > 0) return {parts(job.width, 128), parts(job.height, 180)};
+  return {1, parts(job.height, 45)};
 }
 Areas divided(const AtrousJob& job) {
   constexpr int band = 64;

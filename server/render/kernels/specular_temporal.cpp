@@ -7,6 +7,7 @@
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "hwy/contrib/math/math-inl.h"
+#include "render/kernels/simd/denoise/history_reader.hpp"
 #include "render/kernels/simd/edge_stopping.hpp"
 #include "render/kernels/simd/guide.hpp"
 #include "render/kernels/simd/moments.hpp"

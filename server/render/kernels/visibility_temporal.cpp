@@ -5,6 +5,7 @@
 #define HWY_TARGET_INCLUDE "render/kernels/visibility_temporal.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/denoise/history_reader.hpp"
 #include "render/kernels/simd/guide.hpp"
 #include "render/kernels/simd/moments.hpp"
 

@@ -30,6 +30,16 @@ bool kernels_know(protocol::Rectification rectification) {
   return kernels::can_accumulate(static_cast<std::uint32_t>(rectification));
 }
 
+/// Of visibility. The gradient's changes are of one frame, in one image that is bound as the
+/// previous one, too, and not read.
+gpu::History declare_fast_history(gpu::FramePlan& plan, protocol::Rectification rectification) {
+  constexpr VkFormat format = VK_FORMAT_R32G32_SFLOAT;
+  const auto name = visibility_temporal_buffers.fast_history.name;
+  if (rectification != protocol::Rectification::gradient) return plan.history(name, format);
+  const gpu::ImageRef changes = plan.image(name, format);
+  return {changes, changes};
+}
+
 /// Whether a pass of its own rectifies, after accumulation.
 bool rectifies_after(protocol::Rectification mode) {
   return mode == protocol::Rectification::fast_history || mode == protocol::Rectification::gradient;
@@ -51,11 +61,10 @@ AccumulatedSignal accumulate_visibility(gpu::FramePlan& plan, const FrameInputs&
   const gpu::History history = histories.visibility;
   const gpu::History moments = plan.history(buffers.moments.name, four_floats);
   const gpu::History history_length = histories.visibility_length;
-  const gpu::History fast_history =
-      plan.history(buffers.fast_history.name, VK_FORMAT_R32G32_SFLOAT);
   const gpu::ImageRef signal =
       feedback ? plan.image(buffers.signal.name, four_floats) : history.current;
   const auto& settings = in.settings.shadow_temporal;
+  const gpu::History fast_history = declare_fast_history(plan, settings.rectification);
   const auto constants = [in, &settings] { return temporal_constants(in, settings); };
   const gpu::ImageRef percentiles =
       measure_percentiles(plan, guide, noisy, buffers.percentiles,

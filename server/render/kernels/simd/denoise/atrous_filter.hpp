@@ -8,7 +8,7 @@
 #define HELIOGRAPH_KERNELS_ATROUS_FILTER_HPP
 #endif
 
-#include "render/kernels/simd/atrous/taps.hpp"
+#include "render/kernels/simd/denoise/atrous_taps.hpp"
 #include "render/kernels/simd/edge_stopping.hpp"
 #include "render/kernels/simd/signal_rows.hpp"
 
