@@ -169,7 +169,7 @@ TEST_F(FrameMemory, CanceledFrameLeavesHistoriesAsTheyWere) {
   Frame whole({}, extent, true), canceled({}, extent, true);
   whole.run(0);
   canceled.run(0);
-  for (int after = 1; after < 40; after += 6) {
+  for (int after = 1; after < 28; after += 3) {
     int passes = 0;
     EXPECT_FALSE(canceled.rig.plan().execute([&] { return ++passes > after; }));
   }
