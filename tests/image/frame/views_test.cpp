@@ -147,7 +147,13 @@ TEST(BufferNames, MatchBuffersOfAllSettings) {
     for (const render::BufferInfo& buffer : rig.renderer.buffers()) created.insert(buffer.name);
   }
   const std::vector<std::string>& names = render::buffer_names();
-  EXPECT_EQ(created, std::set<std::string>(names.begin(), names.end()));
+  std::set<std::string> expected(names.begin(), names.end());
+  // Host kernels filter both halves of an iteration at once.
+  if (engine("auto").parts().host_kernels) {
+    expected.erase("visibility.blur.half");
+    expected.erase("specular.blur.half");
+  }
+  EXPECT_EQ(created, expected);
 }
 
 TEST_F(Views, ShowKnownValuesInKnownColors) {
