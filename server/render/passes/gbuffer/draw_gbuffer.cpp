@@ -26,6 +26,10 @@ std::vector<const Draw*> visible_draws(const FrameInputs& in) {
   return draws;
 }
 
+/// Layers of a pixel that are drawn at least, where all in front are open: one more costs the
+/// pixels that need it alone, and of leaves behind leaves the last would look solid.
+constexpr std::uint32_t least_layers = 16;
+
 }  // namespace
 
 bool draws_gbuffer_on_host(const gpu::FramePlan& plan, const FrameInputs& in) {
@@ -71,7 +75,8 @@ GBuffer draw_gbuffer(gpu::FramePlan& plan, const FrameInputs& in, const BlendedI
         const kernels::LitScene lit = lit_scene(in, lights);
         kernels::gbuffer_draw({pass, in.constants, lit.scene,
                                (in.scene.features & shared::scene_deforms) != 0, *triangles,
-                               camera_rounds(in), most_blended, blends ? &lit : nullptr});
+                               std::max(camera_rounds(in), least_layers), most_blended,
+                               blends ? &lit : nullptr});
       });
   return gbuffer;
 }
