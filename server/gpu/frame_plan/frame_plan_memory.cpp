@@ -72,10 +72,8 @@ std::optional<Lifetime> FramePlan::shared_lifetime(std::uint32_t index) const {
   if (resource.image_desc && (keeps_images_ ? leaves_out(index) : reads_left_out(index))) {
     return std::nullopt;
   }
-  if (resource.image_desc && keeps_images_) {
-    lifetime.last = static_cast<std::uint32_t>(passes_.size());
-  }
-  if (std::ranges::find(kept_, index) != kept_.end()) {
+  const bool kept = std::ranges::find(kept_, index) != kept_.end();
+  if (kept || (resource.image_desc && keeps_images_)) {
     lifetime.last = static_cast<std::uint32_t>(passes_.size());
   }
   const VkMemoryRequirements needed = requirements_of(device_, resource);

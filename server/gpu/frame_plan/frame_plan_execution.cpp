@@ -1,0 +1,209 @@
+// How a plan runs a frame.
+
+#include <chrono>
+#include <utility>
+
+#include "gpu/frame_plan/frame_plan_parts.hpp"
+
+namespace heliograph::gpu {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+float since(Clock::time_point start) {
+  return std::chrono::duration<float, std::milli>(Clock::now() - start).count();
+}
+
+std::uint32_t groups(std::uint32_t threads, std::uint32_t local_size) {
+  return (threads + local_size - 1) / local_size;
+}
+
+}  // namespace
+
+bool FramePlan::timed_by_clock() const {
+  return device_.is_cpu();
+}
+
+bool FramePlan::execute(const std::function<bool()>& canceled) {
+  if (!compiled_) throw GpuError("a frame plan runs only after compile()");
+  device_.check_presence();
+  if (!timed_by_clock()) {
+    vkResetQueryPool(device_.handle(), queries_, 0, static_cast<std::uint32_t>(passes_.size() * 2));
+  }
+  submits_ = 0;
+  recording_ = false;
+  bool barrier = false;  // of passes left out: those behind them rely on it
+  for (std::size_t i = 0; i < passes_.size(); ++i) {
+    const Pass& pass = passes_[i];
+    timings_[i].milliseconds = -1.0f;  // not run
+    // Where passes are timed by the clock, nothing is recorded that was not submitted.
+    if (i < cancelable_ && canceled && timed_by_clock() && canceled()) return false;
+    barrier |= pass.barrier_before;
+    if (pass.condition && !pass.condition()) {
+      barrier |= !pass.program;
+      continue;
+    }
+    const bool on_host = pass.runs_on_host();
+    timings_[i].host = on_host;
+    const auto start = Clock::now();
+    if (!on_host) {
+      if (std::exchange(barrier, false)) full_barrier(recorder());
+      record(pass, recorder(), static_cast<std::uint32_t>(i * 2));
+      if (!timed_by_clock()) continue;
+    }
+    flush();
+    if (!on_host) {
+      timings_[i].milliseconds = since(start);
+      continue;
+    }
+    const auto begun = Clock::now();
+    if (pass.kernel) {
+      run_host_kernel(pass);
+    } else {
+      pass.host();
+    }
+    timings_[i].milliseconds = since(begun);
+  }
+  if (readback_.copies()) readback_.record(recorder(), get(read_back_));
+  flush();
+  if (!timed_by_clock()) read_timers();
+  parity_ ^= 1;
+  return true;
+}
+
+void FramePlan::run_host_kernel(const Pass& pass) const {
+  std::array<HostView, most_bindings> views{};
+  for (std::size_t i = 0; i < pass.listed.size(); ++i) {
+    const std::uint32_t index = pass.listed[i].resource;
+    if (index == ImageRef().index) continue;
+    const Resource& resource = resources_[index];
+    const Buffer* const buffer = resource.buffers[parity_];
+    views[i] =
+        buffer ? HostView{buffer->mapped(), buffer->size()} : resource.images[parity_]->host();
+  }
+  std::array<std::byte, most_constants> constants;
+  if (pass.constants) pass.constants(constants.data());
+  pass.kernel(std::span(views).first(pass.listed.size()),
+              std::span(constants).first(pass.constants_size), drawn_);
+}
+
+VkCommandBuffer FramePlan::recorder() {
+  const VkCommandBuffer commands = commands_[submits_];
+  if (std::exchange(recording_, true)) return commands;
+  VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+  info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
+  check(vkBeginCommandBuffer(commands, &info), "begin the frame's commands");
+  return commands;
+}
+
+void FramePlan::flush() {
+  if (!std::exchange(recording_, false)) return;
+  const VkCommandBuffer commands = commands_[submits_++];
+  // Mapped memory is read after this submit, by a host pass or by the caller that takes the frame.
+  VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
+  barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  barrier.srcAccessMask = VK_ACCESS_2_MEMORY_WRITE_BIT;
+  barrier.dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT;
+  barrier.dstAccessMask = VK_ACCESS_2_HOST_READ_BIT | VK_ACCESS_2_HOST_WRITE_BIT;
+  VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+  dependency.memoryBarrierCount = 1;
+  dependency.pMemoryBarriers = &barrier;
+  vkCmdPipelineBarrier2(commands, &dependency);
+  check(vkEndCommandBuffer(commands), "end the frame's commands");
+  device_.submit(commands);
+}
+
+void FramePlan::record(const Pass& pass, VkCommandBuffer commands, std::uint32_t query) {
+  if (device_.labels()) {
+    VkDebugUtilsLabelEXT label{VK_STRUCTURE_TYPE_DEBUG_UTILS_LABEL_EXT};
+    label.pLabelName = pass.name.c_str();
+    vkCmdBeginDebugUtilsLabelEXT(commands, &label);
+  }
+  if (!timed_by_clock()) {
+    vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_, query);
+  }
+  if (pass.is_raster) {
+    record_raster(pass, commands);
+  } else {
+    bind(pass, commands);
+    const VkExtent2D threads = pass.threads.of(drawn_);
+    if (pass.rays) {
+      pass.rays->launch(commands, threads.width);
+    } else if (pass.indirect) {
+      vkCmdDispatchIndirect(commands, get(BufferRef{pass.indirect->first}).handle(),
+                            pass.indirect->second);
+    } else {
+      vkCmdDispatch(commands, groups(threads.width, pass.local_size.width),
+                    groups(threads.height, pass.local_size.height), pass.layers);
+    }
+  }
+  if (!timed_by_clock()) {
+    vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_, query + 1);
+  }
+  if (device_.labels()) vkCmdEndDebugUtilsLabelEXT(commands);
+}
+
+void FramePlan::bind(const Pass& pass, VkCommandBuffer commands) {
+  const VkPipelineBindPoint point = pass.bind_point();
+  const VkPipelineLayout layout = pass.program->layout();
+  vkCmdBindPipeline(commands, point, pass.program->pipeline());
+  for (const auto& [number, set] : shared_sets_) {
+    if (!pass.program->uses_set(number)) continue;
+    vkCmdBindDescriptorSets(commands, point, layout, number, 1, &set, 0, nullptr);
+  }
+  if (pass.sets[parity_]) {
+    vkCmdBindDescriptorSets(commands, point, layout, pass_set, 1, &pass.sets[parity_], 0, nullptr);
+  }
+  if (pass.constants) {
+    std::array<std::byte, most_constants> bytes;
+    pass.constants(bytes.data());
+    vkCmdPushConstants(commands, layout, pass.program->stages(), 0,
+                       static_cast<std::uint32_t>(pass.constants_size), bytes.data());
+  }
+}
+
+void FramePlan::record_raster(const Pass& pass, VkCommandBuffer commands) {
+  const auto attachment = [&](const Pass::Attachment& from) {
+    VkRenderingAttachmentInfo info{VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO};
+    info.imageView = physical(from.resource, parity_).view();
+    info.imageLayout = VK_IMAGE_LAYOUT_GENERAL;
+    info.loadOp = from.clear ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;
+    info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
+    if (from.clear) std::memcpy(&info.clearValue, from.clear->data(), sizeof(float) * 4);
+    return info;
+  };
+  std::vector<VkRenderingAttachmentInfo> colors;
+  for (const auto& color : pass.colors) colors.push_back(attachment(color));
+  VkRenderingAttachmentInfo depth{};
+  if (pass.depth) depth = attachment(*pass.depth);
+  VkRenderingInfo info{VK_STRUCTURE_TYPE_RENDERING_INFO};
+  info.renderArea = {{0, 0}, drawn_};
+  info.layerCount = 1;
+  info.colorAttachmentCount = static_cast<std::uint32_t>(colors.size());
+  info.pColorAttachments = colors.data();
+  info.pDepthAttachment = pass.depth ? &depth : nullptr;
+  vkCmdBeginRendering(commands, &info);
+  const VkViewport viewport{
+      0.0f, 0.0f, static_cast<float>(drawn_.width), static_cast<float>(drawn_.height), 0.0f, 1.0f};
+  vkCmdSetViewport(commands, 0, 1, &viewport);
+  vkCmdSetScissor(commands, 0, 1, &info.renderArea);
+  bind(pass, commands);
+  pass.draw(commands, pass.program->layout());
+  vkCmdEndRendering(commands);
+}
+
+void FramePlan::read_timers() {
+  const float period = device_.limits().timestampPeriod * 1e-6f;
+  for (std::size_t i = 0; i < passes_.size(); ++i) {
+    if (!passes_[i].program) continue;
+    std::array<std::uint64_t, 2> times{};
+    const VkResult result = vkGetQueryPoolResults(
+        device_.handle(), queries_, static_cast<std::uint32_t>(i * 2), 2, sizeof times,
+        times.data(), sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT);
+    if (result == VK_SUCCESS) {
+      timings_[i].milliseconds = static_cast<float>(times[1] - times[0]) * period;
+    }
+  }
+}
+
+}  // namespace heliograph::gpu
