@@ -41,7 +41,7 @@ struct FrameConstants {
   float exposure_factor;
   uint tone_map_curve;             // protocol::ToneMapCurve
   float directional_light_radius;  // tangent of the angular radius of all, -1: each has its own
-  float padding;
+  float texture_footprint;         // of a pixel, pixels: less where frames are drawn smaller
 
   vec4 irradiance[9];   // spherical harmonics of the irradiance / pi, rgb
   vec3 sun_direction;   // toward the environment's sun, world

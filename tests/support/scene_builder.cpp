@@ -126,6 +126,22 @@ std::uint32_t SceneBuilder::add_texture(std::uint32_t width, std::uint32_t heigh
   return static_cast<std::uint32_t>(scene_.textures.size() - 1);
 }
 
+std::uint32_t SceneBuilder::add_darkening_texture(std::uint32_t side, std::uint8_t step) {
+  std::vector<std::uint8_t> pixels;
+  std::uint8_t value = 255;
+  std::uint32_t levels = 0;
+  for (std::uint32_t size = side; size > 0; size /= 2, ++levels) {
+    pixels.insert(pixels.end(), std::size_t{4} * size * size, value);
+    value = static_cast<std::uint8_t>(std::max(value - step, 0));
+  }
+  const std::uint32_t texture = add_texture(side, side, false, std::move(pixels));
+  scene_.images.back().levels = levels;
+  scene_.textures.back().sampler = {
+      shared::wrap_clamp,   shared::wrap_clamp, scene::Filter::linear, scene::Filter::linear, true,
+      scene::Filter::linear};
+  return texture;
+}
+
 SceneBuilder& SceneBuilder::add_sun(const glm::vec3& direction, const glm::vec3& irradiance,
                                     float angular_diameter) {
   shared::Light light{};

@@ -32,6 +32,9 @@ class SceneBuilder {
   /// RGBA8 texture, sRGB or linear, without mip levels; nearest filter, clamped.
   std::uint32_t add_texture(std::uint32_t width, std::uint32_t height, bool srgb,
                             std::vector<std::uint8_t> pixels);
+  /// Linear RGBA8 of `side` x `side`, a power of two, whose levels darken by `step` / 255 each from
+  /// white; linear filters, clamped.
+  std::uint32_t add_darkening_texture(std::uint32_t side, std::uint8_t step);
 
   /// Light travels along `direction`; `irradiance` is that of a facing surface.
   SceneBuilder& add_sun(const glm::vec3& direction, const glm::vec3& irradiance,

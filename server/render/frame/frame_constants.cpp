@@ -76,6 +76,9 @@ shared::FrameConstants make_frame_constants(const scene::Camera& camera,
   constants.unproject = {scale, -offset * scale};
   constants.eye = glm::vec4(camera.eye, 1.0f);
   constants.extent = {sizes.drawn.width, sizes.drawn.height};
+  // Frames that are reconstructed at the size shown need the textures' detail of that size.
+  constants.texture_footprint =
+      static_cast<float>(sizes.drawn.height) / static_cast<float>(sizes.shown.height);
   constants.sample_index = sample;
   constants.seed = static_cast<std::uint32_t>(settings.sampling.seed);
   constants.light_count = static_cast<std::uint32_t>(scene.lights().size());

@@ -54,6 +54,9 @@ vec2 slot_uv(TextureSlot slot) {
   return vec2(dot(slot.transform_row0.xyz, uv), dot(slot.transform_row1.xyz, uv));
 }
 
+/// What the size shown needs of a texture.
+vec4 detail(sampler2D map, vec2 uv) { return texture(map, uv, log2(frame.texture_footprint)); }
+
 /// A normal map's texel about the front face's `normal`; a back face reverses the result as a
 /// whole.
 vec3 mapped_normal(vec3 normal, vec3 texel, float scale, uint map) {
@@ -90,15 +93,15 @@ float exact_view_z(vec3 geometric) {
 /// At the front face's `normal`.
 SurfaceLayer layer_here(vec3 normal) {
   LayerTexels texels;
-  texels.specular = texture(specular_map, slot_uv(layer.specular_texture)).a;
-  texels.specular_color = texture(specular_color_map, slot_uv(layer.specular_color_texture)).rgb;
-  texels.coat = texture(coat_map, slot_uv(layer.coat_texture)).r;
-  texels.coat_roughness = texture(coat_roughness_map, slot_uv(layer.coat_roughness_texture)).g;
-  texels.sheen = texture(sheen_color_map, slot_uv(layer.sheen_color_texture)).rgb;
-  texels.sheen_roughness = texture(sheen_roughness_map, slot_uv(layer.sheen_roughness_texture)).a;
-  texels.transmission = texture(transmission_map, slot_uv(layer.transmission_texture)).r;
-  texels.thickness = texture(thickness_map, slot_uv(layer.thickness_texture)).g;
-  vec3 coat_texel = texture(coat_normal_map, slot_uv(layer.coat_normal_texture)).xyz;
+  texels.specular = detail(specular_map, slot_uv(layer.specular_texture)).a;
+  texels.specular_color = detail(specular_color_map, slot_uv(layer.specular_color_texture)).rgb;
+  texels.coat = detail(coat_map, slot_uv(layer.coat_texture)).r;
+  texels.coat_roughness = detail(coat_roughness_map, slot_uv(layer.coat_roughness_texture)).g;
+  texels.sheen = detail(sheen_color_map, slot_uv(layer.sheen_color_texture)).rgb;
+  texels.sheen_roughness = detail(sheen_roughness_map, slot_uv(layer.sheen_roughness_texture)).a;
+  texels.transmission = detail(transmission_map, slot_uv(layer.transmission_texture)).r;
+  texels.thickness = detail(thickness_map, slot_uv(layer.thickness_texture)).g;
+  vec3 coat_texel = detail(coat_normal_map, slot_uv(layer.coat_normal_texture)).xyz;
   return surface_layer(layer, texels,
                        mapped_normal(normal, coat_texel, layer.coat_normal_scale,
                                      layer.coat_normal_texture.texture));
@@ -107,7 +110,7 @@ SurfaceLayer layer_here(vec3 normal) {
 
 void main() {
   vec4 color = material.base_color * vertex_color *
-               texture(base_color_map, slot_uv(material.base_color_texture));
+               detail(base_color_map, slot_uv(material.base_color_texture));
   vec3 across = cross(dFdy(world_point), dFdx(world_point));
   vec3 vertex_normal = normalize(world_normal);
 #ifdef GBUFFER_LAYERED
@@ -124,12 +127,12 @@ void main() {
   float area = dot(across, across);
   vec3 geometric = area > 0.0 ? across * inversesqrt(area) : vertex_normal * side;
   if (dot(geometric, vertex_normal) * side < 0.0) geometric = -geometric;
-  vec3 texel = texture(normal_map, slot_uv(material.normal_texture)).xyz;
+  vec3 texel = detail(normal_map, slot_uv(material.normal_texture)).xyz;
   vec3 shading = mapped_normal(vertex_normal, texel, material.normal_scale,
                                material.normal_texture.texture) * side;
-  vec4 packed_surface = texture(metallic_roughness_map,
+  vec4 packed_surface = detail(metallic_roughness_map,
                                 slot_uv(material.metallic_roughness_texture));
-  float occlusion = texture(occlusion_map, slot_uv(material.occlusion_texture)).r;
+  float occlusion = detail(occlusion_map, slot_uv(material.occlusion_texture)).r;
 
   normals = vec4(octahedral_encode(shading), octahedral_encode(geometric));
   base_color = vec4(sqrt(clamp(color.rgb, 0.0, 1.0)),
@@ -145,7 +148,7 @@ void main() {
   vec2 uv_now = clip_now.xy / clip_now.z * 0.5;
   vec2 uv_before = clip_before.xy / clip_before.z * 0.5;
   motion = vec4(uv_before - uv_now, view_depths.y - view_depths.x, exact_view_z(geometric));
-  emissive = vec4(material.emissive * texture(emissive_map, slot_uv(material.emissive_texture)).rgb,
+  emissive = vec4(material.emissive * detail(emissive_map, slot_uv(material.emissive_texture)).rgb,
                   1.0);
   depth_slope = vec2(dFdx(view_depths.x), dFdy(view_depths.x));
   instance_id = draw.instance + 1u;

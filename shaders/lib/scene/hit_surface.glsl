@@ -14,9 +14,9 @@ struct RayCone {
   float spread;
 };
 
-/// Of the rays through the middles of pixels.
+/// What of textures the rays through the middles of pixels see.
 RayCone camera_cone() {
-  float pixel = 2.0 * abs(frame.unproject.y) / float(frame.extent.y);
+  float pixel = 2.0 * abs(frame.unproject.y) * frame.texture_footprint / float(frame.extent.y);
   return enabled(frame_orthographic) ? RayCone(pixel, 0.0) : RayCone(0.0, pixel);
 }
 

@@ -38,6 +38,16 @@ TEST_F(FrameConstants, JitterShiftsProjectionBySampleOffset) {
   EXPECT_EQ(make(camera_, 5).view_projection, still.view_projection);
 }
 
+TEST_F(FrameConstants, TexturesAreSeenByThePixelsShown) {
+  const auto footprint = [&](VkExtent2D shown) {
+    return render::make_frame_constants(camera_, settings_, rig_.moving(), {extent, shown}, 0,
+                                        nullptr)
+        .texture_footprint;
+  };
+  EXPECT_FLOAT_EQ(footprint(extent), 1.0f);
+  EXPECT_FLOAT_EQ(footprint({96, 54}), 36.0f / 54.0f);
+}
+
 TEST_F(FrameConstants, PreviousMatricesAreThoseOfPreviousFrame) {
   const auto first = make(camera_, 0);
   EXPECT_EQ(first.previous_unjittered, first.unjittered);

@@ -26,8 +26,9 @@ enum class Source { triangles, rays };
 
 /// The G-buffer pass of a scene.
 struct Raster {
-  Raster(Source source, SceneBuilder& builder, const scene::Camera& camera)
-      : rig(builder.build(), camera, {.extent = extent}),
+  Raster(Source source, SceneBuilder& builder, const scene::Camera& camera,
+         VkExtent2D shown = extent)
+      : rig(builder.build(), camera, {.extent = extent, .shown = shown}),
         gbuffer(source == Source::rays ? render::trace_gbuffer(rig.plan(), rig.inputs())
                                        : render::rasterize_gbuffer(rig.plan(), rig.inputs())) {}
 
@@ -318,6 +319,24 @@ TEST_P(GBuffer, TexturesAreDecodedFromSrgbAndUpright) {
   EXPECT_LE(glm::distance(linear(38, 30), {0, 1, 0}), 0.01f);
   EXPECT_LE(glm::distance(linear(26, 18), {0, 0, 1}), 0.01f);
   EXPECT_LE(glm::distance(linear(38, 18), glm::vec3(0.503f)), 0.01f);
+}
+
+// A frame that is reconstructed at a larger size needs the detail of that size.
+TEST_P(GBuffer, TexturesHaveTheDetailOfTheSizeShown) {
+  constexpr float step = 40.0f;
+  const auto level = [&](VkExtent2D shown) {
+    SceneBuilder builder;
+    shared::Material material = surface(glm::vec3(1.0f));
+    material.base_color_texture.texture =
+        builder.add_darkening_texture(128, static_cast<std::uint8_t>(step));
+    builder.place(builder.add_quad(facing_quad, material));
+    Raster raster(GetParam(), builder, look({0, 0, 5}, {0, 0, 0}), shown);
+    raster.run();
+    const float root = texel(raster.rig.read(raster.gbuffer.base_color), 32, 24).x;
+    return (1.0f - root * root) * 255.0f / step;
+  };
+  EXPECT_NEAR(level(extent), std::log2(128.0f / 23.2f), 0.15f);
+  EXPECT_NEAR(level(extent) - level({2 * extent.width, 2 * extent.height}), 1.0f, 0.1f);
 }
 
 TEST_P(GBuffer, NearerSurfacesOccludeFartherOnes) {

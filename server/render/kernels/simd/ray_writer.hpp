@@ -191,9 +191,11 @@ class CameraLanes {
     if (orthographic_) return normalized(numbers(glm::vec3(frame_.inverse_view[2])));
     return normalized(transform_direction(frame_.inverse_view, -view_position(p, one())));
   }
-  /// The cone of the rays through the middles of pixels: footprint at the start and per metre.
+  /// The cone of textures that rays through the middles of pixels see: footprint at the start and
+  /// per metre.
   glm::vec2 cone() const {
-    const float pixel = 2.0f * std::abs(frame_.unproject.y) / static_cast<float>(frame_.extent.y);
+    const float pixel = 2.0f * std::abs(frame_.unproject.y) * frame_.texture_footprint /
+                        static_cast<float>(frame_.extent.y);
     return orthographic_ ? glm::vec2(pixel, 0.0f) : glm::vec2(0.0f, pixel);
   }
 
