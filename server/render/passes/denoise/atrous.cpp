@@ -16,14 +16,11 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& g
   const bool halves_at_once = separable && plan.uses_host_kernels();
   // The second half of a separable iteration does not read the image that it writes: all of them
   // can write the same one.
-  const bool result_is_written = !feedback || feedback->level != last;
   std::array<gpu::ImageRef, 2> between{result, result};
   if (halves_at_once) {
     if (last > 0) between[(last + 1) % 2] = image(config.buffers.even);
   } else {
-    if (last > 0 && !(separable && result_is_written)) {
-      between[0] = between[1] = image(config.buffers.even);
-    }
+    if (last > 0 && !separable) between[0] = between[1] = image(config.buffers.even);
     if (last > 1 && !separable) between[1] = image(config.buffers.odd);
   }
   const bool needs_half = separable && !halves_at_once;
@@ -52,8 +49,7 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& g
         .host(config.halves_kernel, in.constants);
   };
   for (int level = 0; level <= last; ++level) {
-    gpu::ImageRef to = level == last ? result : between[level % 2];
-    if (feedback && feedback->level == level) to = feedback->image;
+    const gpu::ImageRef to = level == last ? result : between[level % 2];
     const std::string name = config.name + "." + std::to_string(level);
     if (separable) {
       // Which half comes first changes from iteration to iteration and frame to frame: otherwise
@@ -73,6 +69,7 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& g
       pass(name, signal, to, [level] { return KernelShape{level, 2, 2, false}; });
     }
     signal = to;
+    if (feedback && feedback->level == level) feedback->keep(signal);
   }
   return signal;
 }

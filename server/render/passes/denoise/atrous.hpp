@@ -58,10 +58,10 @@ struct AtrousConfig {
   std::function<shared::AtrousConstants(const KernelShape&)> constants;
 };
 
-/// An image that the result of iteration `level` is written to, for the next frame.
+/// Gets the result of iteration `level`, for the next frame.
 struct Feedback {
   int level;
-  gpu::ImageRef image;
+  std::function<void(gpu::ImageRef)> keep;
 };
 
 /// The a-trous filter (Dammertz et al. 2010; paper sections 3.2 and 3.3): `iterations` passes, or
