@@ -21,7 +21,8 @@ HWY_INLINE AtrousPass make_pass(const Job& job, const shared::AtrousConstants& c
           frame,
           job.depth_slope,
           job.height,
-          2.0f * std::abs(frame.unproject.y) / static_cast<float>(frame.extent.y),
+          2.0f * std::abs(frame.unproject.y) / static_cast<float>(frame.extent.y) *
+              static_cast<float>(constants.pixels_per_texel),
           (frame.flags & shared::frame_orthographic) != 0,
           atrous_steps(constants)};
 }
@@ -184,31 +185,46 @@ Areas divided(const AtrousJob& job) {
   return {1, parts(job.height, band)};
 }
 
+int pixels_per_texel(const AtrousJob& job) {
+  return job.constants.pixels_per_texel;
+}
+int pixels_per_texel(const AtrousHalvesJob& job) {
+  return job.constants.first.pixels_per_texel;
+}
+
+/// Calls `filter(job, area)` with a job of the images' size.
 template <class Job, class Filter>
-void for_each_area(const Job& job, const Filter& filter) {
+void for_each_area(Job job, const Filter& filter) {
+  const int side = pixels_per_texel(job);
+  job.width = (job.width + side - 1) / side;
+  job.height = (job.height + side - 1) / side;
   const Areas areas = divided(job);
   for_each_range(areas.count(), 1,
-                 [&](int first, int) { filter(areas.at(first, job.width, job.height)); });
+                 [&](int first, int) { filter(job, areas.at(first, job.width, job.height)); });
 }
 
 }  // namespace
 
-void visibility_atrous(const AtrousJob& job) {
-  for_each_area(job, [&](const Area& area) { HWY_DYNAMIC_DISPATCH(filter_visibility)(job, area); });
+void visibility_atrous(const AtrousJob& whole) {
+  for_each_area(whole, [](const AtrousJob& job, const Area& area) {
+    HWY_DYNAMIC_DISPATCH(filter_visibility)(job, area);
+  });
 }
 
-void specular_atrous(const AtrousJob& job) {
-  for_each_area(job, [&](const Area& area) { HWY_DYNAMIC_DISPATCH(filter_specular)(job, area); });
+void specular_atrous(const AtrousJob& whole) {
+  for_each_area(whole, [](const AtrousJob& job, const Area& area) {
+    HWY_DYNAMIC_DISPATCH(filter_specular)(job, area);
+  });
 }
 
-void visibility_atrous_halves(const AtrousHalvesJob& job) {
-  for_each_area(job, [&](const Area& area) {
+void visibility_atrous_halves(const AtrousHalvesJob& whole) {
+  for_each_area(whole, [](const AtrousHalvesJob& job, const Area& area) {
     HWY_DYNAMIC_DISPATCH(filter_visibility_halves)(job, area);
   });
 }
 
-void specular_atrous_halves(const AtrousHalvesJob& job) {
-  for_each_area(job, [&](const Area& area) {
+void specular_atrous_halves(const AtrousHalvesJob& whole) {
+  for_each_area(whole, [](const AtrousHalvesJob& job, const Area& area) {
     HWY_DYNAMIC_DISPATCH(filter_specular_halves)(job, area);
   });
 }

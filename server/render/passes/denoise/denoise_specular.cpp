@@ -81,7 +81,8 @@ gpu::ImageRef denoise_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
       feed_specular_back(plan, in, accumulated, filtered);
     };
     estimate_specular_variance(plan, in, gbuffer, guide, accumulated);
-    signal = blur(plan, in, gbuffer, guide, specular_atrous_config(in), accumulated.signal,
+    signal = blur(plan, in, {guide.surface, gbuffer.depth_slope, accumulated.signal},
+                  specular_atrous_config(in),
                   feedback ? std::optional(Feedback{blurring.feedback, feed_back}) : std::nullopt);
   }
   return tone_compressed ? expand(plan, in, signal) : signal;
