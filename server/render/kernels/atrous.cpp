@@ -175,10 +175,16 @@ constexpr int parts(int size, int part) {
 }
 
 /// What is filtered first must exist beside an area, too, in the direction of the second half: few
-/// areas in that direction waste least, and enough for all processors.
+/// areas in that direction waste least. At least one for each processor.
 Areas divided(const AtrousHalvesJob& job) {
-  if (job.constants.first.columns > 0) return {parts(job.width, 128), parts(job.height, 180)};
-  return {1, parts(job.height, 45)};
+  const bool across_first = job.constants.first.columns > 0;
+  Areas areas = across_first ? Areas{parts(job.width, 128), parts(job.height, 180)}
+                             : Areas{1, parts(job.height, 45)};
+  int& number = across_first ? areas.rows : areas.columns;
+  constexpr int least_side = 32;
+  const int most = (across_first ? job.height : job.width) / least_side;
+  while (areas.count() < processors() && 2 * number <= most) number *= 2;
+  return areas;
 }
 Areas divided(const AtrousJob& job) {
   constexpr int band = 64;
