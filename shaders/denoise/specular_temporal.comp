@@ -6,6 +6,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 // either position is a candidate.
 #include "lib/frame.glsl"
 #include "lib/denoise/guide.glsl"
+#include "lib/denoise/history_texels.glsl"
 #include "lib/denoise/moments.glsl"
 #include "lib/math/octahedral.glsl"
 #include "lib/denoise/rectification.glsl"
@@ -19,14 +20,16 @@ layout(set = 1, binding = 4, rgba32f) readonly uniform image2D previous_normals;
 layout(set = 1, binding = 5, rgba8) readonly uniform image2D previous_surface;
 layout(set = 1, binding = 6, rgba32f) readonly uniform image2D previous_motion;
 layout(set = 1, binding = 7, r32ui) readonly uniform uimage2D previous_instance;
-layout(set = 1, binding = 8, rgba32f) readonly uniform image2D previous_signal;
-layout(set = 1, binding = 9, rgba32f) readonly uniform image2D previous_history;
-layout(set = 1, binding = 10, rgba32f) readonly uniform image2D previous_fast;
+layout(set = 1, binding = 8, rgba16f) readonly uniform image2D previous_signal;
+layout(set = 1, binding = 9, rgba16f) readonly uniform image2D previous_history;
+layout(set = 1, binding = 10, rgba16f) readonly uniform image2D previous_fast;
 layout(set = 1, binding = 11, rgba32f) readonly uniform image2D percentiles;  // of tiles, or anything
 layout(set = 1, binding = 12, rgba32f) writeonly uniform image2D signal;   // radiance, variance
-layout(set = 1, binding = 13, rgba32f) writeonly uniform image2D history;  // frames, moved, moments
-layout(set = 1, binding = 14, rgba32f) writeonly uniform image2D fast;  // the last few frames or
-                                                           // the change; the raw distance
+layout(set = 1, binding = 13, rgba16f) writeonly uniform image2D kept;     // radiance, distance
+// Frames, how far rectification moved the mean, mean and deviation of the brightness of samples.
+layout(set = 1, binding = 14, rgba16f) writeonly uniform image2D history;
+// The last few frames or the change; the raw distance.
+layout(set = 1, binding = 15, rgba16f) writeonly uniform image2D fast;
 layout(push_constant) uniform Constants { TemporalConstants constants; };
 
 #include "lib/denoise/percentile_tiles.glsl"
@@ -88,7 +91,7 @@ HistorySample fetch_history(HistoryTaps taps) {
     vec4 state = imageLoad(previous_history, tap);
     history.radiance += weight * imageLoad(previous_signal, tap).rgb;
     history.frames += weight * state.x;
-    history.moments += weight * state.zw;
+    history.moments += weight * vec2(state.z, dot(state.zw, state.zw));
     if (!gradient) history.fast += weight * imageLoad(previous_fast, tap).rgb;
   }
   if (taps.whole && (constants.flags & temporal_bicubic) != 0u) {
@@ -250,8 +253,10 @@ void main() {
   vec3 now = raw_sample.rgb;
   // The history counts what was sampled: without a sample it stays as it is.
   float sampled = raw_sample.w < 0.0 ? 0.0 : 1.0;
+  uvec4 rounding = rounding_of(pixel, frame.sample_index);
   if (guide_is_background(guided)) {
     imageStore(signal, pixel, vec4(0.0));
+    imageStore(kept, pixel, vec4(0.0));
     imageStore(history, pixel, vec4(0.0));
     imageStore(fast, pixel, vec4(0.0));
     return;
@@ -280,9 +285,11 @@ void main() {
   if ((constants.flags & temporal_mean_variance) != 0u) variance /= max(frames, 1.0);
 
   imageStore(signal, pixel, vec4(radiance, variance));
-  imageStore(history, pixel, vec4(frames, moved, moments));
+  float deviation = sqrt(max(moments.y - moments.x * moments.x, 0.0));
+  imageStore(kept, pixel, as_halves(vec4(radiance, raw_sample.w), rounding));
+  imageStore(history, pixel, as_halves(vec4(frames, moved, moments.x, deviation), rounding));
   vec3 change = old.frames > 0.0 ? sampled * (now - old.radiance) : vec3(0.0);
   vec3 recent = mix(old.fast, now, sampled / clamp(frames, 1.0, fast_frames));
   bool gradient = constants.rectification == rectification_gradient;
-  imageStore(fast, pixel, vec4(gradient ? change : recent, raw_sample.w));
+  imageStore(fast, pixel, as_halves(vec4(gradient ? change : recent, raw_sample.w), rounding));
 }

@@ -8,14 +8,16 @@ layout(local_size_x = 8, local_size_y = 8) in;
 // to neither side.
 #include "lib/frame.glsl"
 #include "lib/denoise/guide.glsl"
+#include "lib/denoise/history_texels.glsl"
 #include "lib/denoise/moments.glsl"
 #include "lib/denoise/rectification.glsl"
 #include "lib/denoise/reprojection.glsl"
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D guide;
-layout(set = 1, binding = 1, rg32f) readonly uniform image2D fast;  // or the change
+layout(set = 1, binding = 1, rg16f) readonly uniform image2D fast;  // or the change
 layout(set = 1, binding = 2, rgba32f) uniform image2D signal;
-layout(set = 1, binding = 3, rgba32f) uniform image2D history;
+layout(set = 1, binding = 3, rgba16f) uniform image2D history;
+layout(set = 1, binding = 4, rgba16) writeonly uniform image2D kept;
 layout(push_constant) uniform Constants { TemporalConstants constants; };
 
 /// 0 where no sample was taken.
@@ -42,7 +44,7 @@ void main() {
   bool gradient = constants.rectification == rectification_gradient;
   Box box = gradient ? mean_box(window, surfaces, constants.scale,
                                 min_sampled_fraction)
-                     : variance_box(window, constants.scale);
+                     : widened(variance_box(window, constants.scale), visibility_rounding);
   vec4 value = imageLoad(signal, pixel);
   vec2 held = clamp_to(box, vec3(value.xy, 0.0)).xy;
   vec2 shortened = shortened_history(state.xy, abs(held - value.xy), 0.5 * (box.high - box.low).xy);
@@ -60,5 +62,7 @@ void main() {
     value.zw *= state.xy / max(shortened, vec2(1.0));
   }
   imageStore(signal, pixel, vec4(held, value.zw));
-  imageStore(history, pixel, vec4(shortened, moved));
+  uvec4 rounding = rounding_of(pixel, frame.sample_index);
+  imageStore(kept, pixel, as_fractions(vec4(held, value.zw), rounding));
+  imageStore(history, pixel, as_halves(vec4(shortened, moved), rounding));
 }

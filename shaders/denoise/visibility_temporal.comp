@@ -5,6 +5,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 // together.
 #include "lib/frame.glsl"
 #include "lib/denoise/guide.glsl"
+#include "lib/denoise/history_texels.glsl"
 #include "lib/denoise/moments.glsl"
 #include "lib/denoise/rectification.glsl"
 #include "lib/denoise/reprojection.glsl"
@@ -12,15 +13,16 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D raw;  // shadow x, ambient y
 layout(set = 1, binding = 1, rgba32f) readonly uniform image2D guide;
 layout(set = 1, binding = 2, rgba32f) readonly uniform image2D reprojection;
-layout(set = 1, binding = 3, rgba32f) readonly uniform image2D previous_signal;
-layout(set = 1, binding = 4, rgba32f) readonly uniform image2D previous_moments;
-layout(set = 1, binding = 5, rgba32f) readonly uniform image2D previous_history;
-layout(set = 1, binding = 6, rg32f) readonly uniform image2D previous_fast;
+layout(set = 1, binding = 3, rgba16) readonly uniform image2D previous_signal;
+layout(set = 1, binding = 4, rgba16) readonly uniform image2D previous_moments;
+layout(set = 1, binding = 5, rgba16f) readonly uniform image2D previous_history;
+layout(set = 1, binding = 6, rg16f) readonly uniform image2D previous_fast;
 layout(set = 1, binding = 7, rgba32f) readonly uniform image2D percentiles;  // of tiles, or anything
 layout(set = 1, binding = 8, rgba32f) writeonly uniform image2D signal;   // value xy, variance zw
-layout(set = 1, binding = 9, rgba32f) writeonly uniform image2D moments;  // first xy, second zw
-layout(set = 1, binding = 10, rgba32f) writeonly uniform image2D history;  // frames xy, moved zw
-layout(set = 1, binding = 11, rg32f) writeonly uniform image2D fast;  // or the change, for gradient
+layout(set = 1, binding = 9, rgba16) writeonly uniform image2D kept;     // the same
+layout(set = 1, binding = 10, rgba16) writeonly uniform image2D moments;  // first xy, second zw
+layout(set = 1, binding = 11, rgba16f) writeonly uniform image2D history;  // frames xy, moved zw
+layout(set = 1, binding = 12, rg16f) writeonly uniform image2D fast;  // or the change, for gradient
 layout(push_constant) uniform Constants { TemporalConstants constants; };
 
 #include "lib/denoise/percentile_tiles.glsl"
@@ -99,8 +101,10 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel)) return;
   vec2 now = imageLoad(raw, pixel).xy;
+  uvec4 rounding = rounding_of(pixel, frame.sample_index);
   if (guide_is_background(imageLoad(guide, pixel))) {
     imageStore(signal, pixel, vec4(now, vec2(0.0)));
+    imageStore(kept, pixel, as_fractions(vec4(now, vec2(0.0)), rounding));
     imageStore(moments, pixel, vec4(0.0));
     imageStore(history, pixel, vec4(0.0));
     imageStore(fast, pixel, vec4(0.0));
@@ -129,11 +133,12 @@ void main() {
   if ((constants.flags & temporal_mean_variance) != 0u) variance /= max(frames, vec2(1.0));
 
   imageStore(signal, pixel, vec4(value, variance));
-  imageStore(moments, pixel, vec4(first, second));
-  imageStore(history, pixel, vec4(frames, moved));
+  imageStore(kept, pixel, as_fractions(vec4(value, variance), rounding));
+  imageStore(moments, pixel, as_fractions(vec4(first, second), rounding));
+  imageStore(history, pixel, as_halves(vec4(frames, moved), rounding));
   vec2 change = mix(vec2(0.0), now - old.signal, greaterThan(old.frames, vec2(0.0)));
   change = mix(vec2(change_unknown), change, sampled);
   vec2 recent = mix(old.fast, now, sampled * sample_weight(frames, fast_frames));
   bool gradient = constants.rectification == rectification_gradient;
-  imageStore(fast, pixel, vec4(gradient ? change : recent, 0.0, 0.0));
+  imageStore(fast, pixel, as_halves(vec4(gradient ? change : recent, 0.0, 0.0), rounding));
 }

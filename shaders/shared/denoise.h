@@ -80,6 +80,17 @@ SHARED_CONSTANT float virtual_distance_min_divisor = 0.25f;
 // HistoryTaps.AreBilinearAndRenormaliseOverValidTaps.
 SHARED_CONSTANT float min_tap_weight_sum = 0.01f;
 
+// Histories of 16 bits: the rounding of a pixel changes from frame to frame by 2^32 times the
+// golden ratio, less its whole part, so that its errors cancel out soon; of fractions it reaches
+// over this part of a step. TemporalAccumulation.LongHistoryFollowsSmallChanges.
+SHARED_CONSTANT uint rounding_step = 0x9e3779b9u;
+SHARED_CONSTANT float rounding_range = 0.9375f;
+SHARED_CONSTANT float largest_half = 65504.0f;
+// What rounding changes a signal without noise by, which is no reason for rectification: of
+// visibility, and of reflections in parts of their brightness.
+SHARED_CONSTANT float visibility_rounding = 1.0f / 2048.0f;
+SHARED_CONSTANT float specular_rounding = 1.0f / 1024.0f;
+
 // mean_box: fewer pixels of a window do not tell its spread. Half of them are sampled where
 // something moves; reflections have rare bright samples, which half of the pixels may miss.
 SHARED_CONSTANT float min_sampled_fraction = 0.4f;

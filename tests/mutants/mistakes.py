@@ -101,6 +101,11 @@ MISTAKES = (
             "vec2 moments = unpackHalf2x16(packHalf2x16("
             "mix(old.moments, vec2(bright, bright * bright), weight)));",
             "gpu_tests", "TemporalAccumulation.HdrStepConvergesWithoutStuckMoments"),
+    Mistake("13", "histories rounded to the nearest step",
+            "shaders/lib/denoise/history_texels.glsl",
+            "return hash + frame_number * rounding_step + (uvec4(0u, 1u, 2u, 3u) << 30u);",
+            "return uvec4(0x80000000u);",
+            "gpu_tests", "TemporalAccumulation.LongHistoryFollowsSmallChanges"),
     Mistake("14", "NaNs stay in the history",
             "shaders/lib/denoise/moments.glsl",
             "return isnan(value) || isinf(value) ? 0.0 : value;", "return value;",

@@ -41,6 +41,7 @@ std::uint32_t texel_bytes(VkFormat format) {
   switch (format) {
     case VK_FORMAT_R8G8B8A8_UNORM:
     case VK_FORMAT_R8G8B8A8_SRGB:
+    case VK_FORMAT_R16G16_SFLOAT:
     case VK_FORMAT_R32_UINT:
     case VK_FORMAT_R32_SFLOAT:
     case VK_FORMAT_D32_SFLOAT:
@@ -48,6 +49,7 @@ std::uint32_t texel_bytes(VkFormat format) {
     case VK_FORMAT_R32G32_UINT:
     case VK_FORMAT_R32G32_SFLOAT:
     case VK_FORMAT_R16G16B16A16_SFLOAT:
+    case VK_FORMAT_R16G16B16A16_UNORM:
       return 8;
     case VK_FORMAT_R32G32B32A32_UINT:
     case VK_FORMAT_R32G32B32A32_SFLOAT:
@@ -73,8 +75,12 @@ const char* format_name(VkFormat format) {
       return "rg32ui";
     case VK_FORMAT_R32G32_SFLOAT:
       return "rg32f";
+    case VK_FORMAT_R16G16_SFLOAT:
+      return "rg16f";
     case VK_FORMAT_R16G16B16A16_SFLOAT:
       return "rgba16f";
+    case VK_FORMAT_R16G16B16A16_UNORM:
+      return "rgba16";
     case VK_FORMAT_R32G32B32A32_UINT:
       return "rgba32ui";
     case VK_FORMAT_R32G32B32A32_SFLOAT:

@@ -19,6 +19,10 @@ VkFormat storage_format(SpvImageFormat format) {
       return VK_FORMAT_R32G32B32A32_SFLOAT;
     case SpvImageFormatRgba16f:
       return VK_FORMAT_R16G16B16A16_SFLOAT;
+    case SpvImageFormatRgba16:
+      return VK_FORMAT_R16G16B16A16_UNORM;
+    case SpvImageFormatRg16f:
+      return VK_FORMAT_R16G16_SFLOAT;
     case SpvImageFormatRg32f:
       return VK_FORMAT_R32G32_SFLOAT;
     case SpvImageFormatR32f:

@@ -43,8 +43,8 @@ Reprojected reproject_and_plan(gpu::FramePlan& plan, const FrameInputs& in,
   const Guide guide = reproject(plan, in, gbuffer);
   const SampleHistories histories = declare_sample_histories(plan);
   const PreviousSamples previous{histories.visibility_length.previous,
-                                 histories.specular_length.previous,
-                                 histories.specular_fast.previous, histories.visibility.previous};
+                                 histories.specular_length.previous, histories.specular.previous,
+                                 histories.visibility.previous};
   return {guide, histories, plan_samples(plan, in, gbuffer, guide, previous)};
 }
 

@@ -6,7 +6,7 @@
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "hwy/contrib/math/math-inl.h"
-#include "render/kernels/simd/pixels.hpp"
+#include "render/kernels/simd/denoise/history_texels.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
@@ -87,7 +87,9 @@ class WindowBoxes {
     const V one = hn::Set(d_, 1.0f), zero = hn::Zero(d_);
     const V count = across(count_row, x);
     const V inv_count = one / hn::Max(count, one);
-    V scale = hn::Set(d_, job_.constants.scale), least = zero;
+    V scale = hn::Set(d_, job_.constants.scale);
+    V least = hn::Set(d_, shared::visibility_rounding);
+    if (channels == 3) least = across(0, x) * inv_count * hn::Set(d_, shared::specular_rounding);
     if (job_.constants.rectification == shared::rectification_gradient) {
       // mean_box() of shaders/lib/denoise/rectification.glsl
       const V surfaces = across(surfaces_row, x);
@@ -194,16 +196,21 @@ class Rectification {
   HWY_INLINE void hold(const Kernel& kernel, const WindowBoxes<D, channels>& boxes, int x, int y,
                        M requested) const {
     float* const signal = row_of<float>(job_.signal, y) + 4 * x;
-    float* const history = row_of<float>(job_.history_length, y) + 4 * x;
-    const Quad<V> value = load4(d_, signal), state = load4(d_, history);
+    const Quad<V> value = load4(d_, signal);
+    const Quad<V> state = load_history4<Halves>(d_, job_.history_length, x, y);
     Quad<V> new_value, new_state;
     if (job_.constants.rectification == shared::rectification_gradient) {
       kernel.shorten(boxes.box(x), x, y, value, state, new_value, new_state);
     } else {
       kernel.hold(boxes.box(x), value, state, new_value, new_state);
     }
-    store4(d_, select(requested, new_value, value), signal);
-    store4(d_, select(requested, new_state, state), history);
+    // Where nothing is requested the histories get what they hold.
+    const Rounding<D> rounding(x, y, job_.frame.sample_index);
+    const Quad<V> held = select(requested, new_value, value);
+    store4(d_, held, signal);
+    kernel.keep(held, rounding, x, y);
+    store_history4<Halves>(d_, select(requested, new_state, state), rounding, job_.history_length,
+                           x, y);
   }
 };
 
@@ -220,12 +227,16 @@ class VisibilityRectification : public Rectification<D, VisibilityRectification<
   HWY_INLINE explicit VisibilityRectification(const RectifyJob& job) : Base(job) {}
 
   HWY_INLINE M load(int x, int y, V* values) const {
-    const Pair<V> fast = load2(d_, row_of<const float>(job_.fast_history, y) + 2 * x);
+    const Pair<V> fast = load_halves2(d_, job_.fast_history, x, y);
     const V unknown = hn::Set(d_, shared::change_unknown);
     const M no_shadow = hn::Eq(fast.x, unknown), no_ambient = hn::Eq(fast.y, unknown);
     values[0] = hn::IfThenZeroElse(no_shadow, fast.x);
     values[1] = hn::IfThenZeroElse(no_ambient, fast.y);
     return hn::Not(hn::And(no_shadow, no_ambient));
+  }
+
+  HWY_INLINE void keep(const Quad<V>& value, const Rounding<D>& rounding, int x, int y) const {
+    store_history4<Fractions>(d_, value, rounding, job_.history, x, y);
   }
 
   HWY_INLINE void hold(const Box& box, const Quad<V>& value, const Quad<V>& state,
@@ -271,7 +282,7 @@ class SpecularRectification : public Rectification<D, SpecularRectification<D>, 
   HWY_INLINE explicit SpecularRectification(const RectifyJob& job) : Base(job) {}
 
   HWY_INLINE M load(int x, int y, V* values) const {
-    const Quad<V> fast = load4(d_, row_of<const float>(job_.fast_history, y) + 4 * x);
+    const Quad<V> fast = load_history4<Halves>(d_, job_.fast_history, x, y);
     const Triple<V> color = to_ycocg({fast.x, fast.y, fast.z});
     values[0] = color.x;
     values[1] = color.y;
@@ -280,6 +291,12 @@ class SpecularRectification : public Rectification<D, SpecularRectification<D>, 
     const bool changes = job_.constants.rectification == shared::rectification_gradient;
     const V zero = hn::Zero(d_);
     return hn::Ge(changes ? fast.w : zero, zero);
+  }
+
+  HWY_INLINE void keep(const Quad<V>& value, const Rounding<D>& rounding, int x, int y) const {
+    const V distance = load_history4<Halves>(d_, job_.fast_history, x, y).w;
+    store_history4<Halves>(d_, Quad<V>{value.x, value.y, value.z, distance}, rounding, job_.history,
+                           x, y);
   }
 
   HWY_INLINE void hold(const Box& box, const Quad<V>& value, const Quad<V>& state,
@@ -304,7 +321,7 @@ class SpecularRectification : public Rectification<D, SpecularRectification<D>, 
     const V bright = hn::Abs(to_ycocg({value.x, value.y, value.z}).x);
     const V frames = hn::Min(state.x, frames_under_motion(change / (bright + change + smallest)));
     const V weight_change = one / hn::Max(frames, one) - one / hn::Max(state.x, one);
-    const Quad<V> sampled = load4(d_, row_of<const float>(job_.fast_history, y) + 4 * x);
+    const Quad<V> sampled = load_history4<Halves>(d_, job_.fast_history, x, y);
     const V moved = to_ycocg({sampled.x, sampled.y, sampled.z}).x * weight_change;
     new_value = {hn::MulAdd(sampled.x, weight_change, value.x),
                  hn::MulAdd(sampled.y, weight_change, value.y),

@@ -9,7 +9,8 @@
 #define HWY_TARGET_INCLUDE "render/kernels/spatial_variance.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
-#include "render/kernels/simd/signal_rows.hpp"
+#include "render/kernels/simd/denoise/moment_rows.hpp"
+#include "render/kernels/simd/edge_stopping.hpp"
 #include "render/kernels/simd/view.hpp"
 
 #ifndef HELIOGRAPH_SPATIAL_VARIANCE_JOB
@@ -30,7 +31,7 @@ template <class D>
 class SpatialVariance {
   using V = hn::Vec<D>;
   using M = hn::Mask<D>;
-  using Rows = SignalRows<D, true>;
+  using Rows = MomentRows<D>;
 
   static constexpr int radius = 3;
   // Of shaders/lib/denoise/spatial_variance.glsl
@@ -65,16 +66,15 @@ class SpatialVariance {
       const ViewedRow<D> view(job_.frame, y);
       for (int start = 0; start < job_.width; start += lanes) {
         const int x = std::min(start, job_.width - lanes);
-        const Quad<V> history = load(job_.history_length, x, y);
+        const Quad<V> history = load_history4<Halves>(d_, job_.history_length, x, y);
         const Pair<V> frames{history.x, visibility_ ? history.y : history.x};
         const M brief =
             hn::Lt(hn::Min(frames.x, frames.y), set(job_.constants.spatial_variance_frames));
         const M requested = hn::And(brief, from_column(d_, x, start));
         if (hn::AllFalse(d_, requested)) continue;
         if (!rows) {
-          rows.emplace(job_.guide, job_.moments, job_.width, job_.height,
-                       Area{0, job_.width, std::max(first - radius, 0), last},
-                       RowReach{radius, radius, radius});
+          rows.emplace(job_.guide, job_.moments, visibility_, job_.width, job_.height,
+                       std::max(first - radius, 0), radius);
         }
         rows->advance(y);
         block(*rows, view, x, y, requested, frames);
@@ -84,9 +84,6 @@ class SpatialVariance {
 
  private:
   HWY_INLINE V set(float value) const { return hn::Set(d_, value); }
-  HWY_INLINE Quad<V> load(const gpu::HostView& image, int x, int y) const {
-    return load4(d_, row_of<const float>(image, y) + 4 * x);
-  }
 
   HWY_INLINE void block(const Rows& rows, const ViewedRow<D>& view, int x, int y, M requested,
                         const Pair<V>& frames) const {
@@ -115,7 +112,13 @@ class SpatialVariance {
     } else {
       changed.w = hn::Max(variance(mean.z, mean.w, frames.x), value.w);
     }
-    store4(d_, select(requested, changed, value), signal);
+    changed = select(requested, changed, value);
+    store4(d_, changed, signal);
+    if (visibility_) {
+      // Where nothing is requested it gets what it holds.
+      store_history4<Fractions>(d_, changed, Rounding<D>(x, y, job_.frame.sample_index),
+                                job_.history, x, y);
+    }
   }
 
   HWY_INLINE V mixed(V from, V to, V fraction) const {
@@ -189,10 +192,10 @@ class SpatialVariance {
           hn::MulAdd(set(128.0f * octaves), cosine, set(weight_one - 128.0f * octaves));
       weight = edge_weight(valid, hn::NegMulAdd(off_plane, inv_allowed, of_normal));
     }
-    sums.moments.x = hn::MulAdd(weight, plane(Rows::signal), sums.moments.x);
-    sums.moments.y = hn::MulAdd(weight, plane(Rows::signal + 1), sums.moments.y);
-    sums.moments.z = hn::MulAdd(weight, plane(Rows::signal + 2), sums.moments.z);
-    sums.moments.w = hn::MulAdd(weight, plane(Rows::signal + 3), sums.moments.w);
+    sums.moments.x = hn::MulAdd(weight, plane(Rows::moment), sums.moments.x);
+    sums.moments.y = hn::MulAdd(weight, plane(Rows::moment + 1), sums.moments.y);
+    sums.moments.z = hn::MulAdd(weight, plane(Rows::moment + 2), sums.moments.z);
+    sums.moments.w = hn::MulAdd(weight, plane(Rows::moment + 3), sums.moments.w);
     sums.total = sums.total + weight;
   }
 

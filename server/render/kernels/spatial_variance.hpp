@@ -10,6 +10,7 @@ template <class Stage>
 struct SpatialVarianceBindings {
   gpu::Read<Stage> guide, depth_slope, moments, history_length;
   gpu::ReadWrite<Stage> signal;
+  gpu::OptionalWrite<Stage> history;  // of visibility
 };
 using SpatialVarianceJob = FrameJob<SpatialVarianceBindings, shared::TemporalConstants>;
 

@@ -231,16 +231,16 @@ class SpecularAccumulation {
   HWY_INLINE HistorySample fetch_history(const HistoryTaps<D>& taps) const {
     const HistoryReader<D> reader(taps, job_.width, job_.height);
     const bool bicubic = (c_.flags & shared::temporal_bicubic) != 0;
-    const Quad<V> signal =
-        bicubic ? reader.bicubic(job_.previous_history) : reader.bilinear(job_.previous_history);
-    const Quad<V> state = reader.bilinear(job_.previous_history_length);
+    const Quad<V> signal = bicubic ? reader.template bicubic<Halves>(job_.previous_history)
+                                   : reader.template bilinear<Halves>(job_.previous_history);
+    const Quad<V> state = reader.template bilinear<MeanAndDeviation>(job_.previous_history_length);
     HistorySample r = no_history();
     r.radiance = {signal.x, signal.y, signal.z};
     r.frames = state.x;
     r.moments = {state.z, state.w};
     // The gradient compares with the long history alone.
     if (c_.rectification != shared::rectification_gradient) {
-      const Quad<V> fast = reader.bilinear(job_.previous_fast_history);
+      const Quad<V> fast = reader.template bilinear<Halves>(job_.previous_fast_history);
       r.fast = {fast.x, fast.y, fast.z};
     }
     return r;
@@ -321,17 +321,22 @@ class SpecularAccumulation {
     const M seen = hn::Gt(s.view_z, zero);
     const Quad<V> nothing_seen{zero, zero, zero, zero};
     float* const signal = row_of<float>(job_.signal, y) + 4 * x;
-    float* const history = row_of<float>(job_.history_length, y) + 4 * x;
-    float* const fast = row_of<float>(job_.fast_history, y) + 4 * x;
+    const Rounding<D> rounding(x, y, job_.frame.sample_index);
+    const auto keep = [&](const gpu::HostView& image, const Quad<V>& t)
+                          HWY_ATTR { store_history4<Halves>(d_, t, rounding, image, x, y); };
     if (hn::AllFalse(d_, seen)) {
-      for (float* out : {signal, history, fast}) store4(d_, nothing_seen, out);
+      store4(d_, nothing_seen, signal);
+      keep(job_.history, nothing_seen);
+      keep(job_.history_length, nothing_seen);
+      keep(job_.fast_history, nothing_seen);
       return;
     }
     const Triple<V> now = three_planes(ring, y, radiance, x);
     const HistorySample old = reprojected_history(ring, view, x, y, seen, s);
 
     // The history counts what was sampled: without a sample it stays as it is.
-    const V distance = load(job_.noisy, x, y).w;
+    const V noisy_distance = load(job_.noisy, x, y).w;
+    const V distance = hn::IfThenZeroElse(is_bad(noisy_distance), noisy_distance);
     const M left_out = hn::Lt(distance, zero);
     const V sampled = hn::IfThenZeroElse(left_out, one);
     const V frames = hn::Min(old.frames + sampled, max_history_frames(s.roughness));
@@ -349,9 +354,12 @@ class SpecularAccumulation {
       recent = select(changed, now - old.radiance, Triple<V>{zero, zero, zero});
     }
 
+    const V deviation = hn::Sqrt(hn::Max(hn::NegMulAdd(first, first, second), zero));
     store4(d_, select(seen, Quad<V>{mean.x, mean.y, mean.z, variance}, nothing_seen), signal);
-    store4(d_, select(seen, Quad<V>{frames, zero, first, second}, nothing_seen), history);
-    store4(d_, select(seen, Quad<V>{recent.x, recent.y, recent.z, distance}, nothing_seen), fast);
+    keep(job_.history, select(seen, Quad<V>{mean.x, mean.y, mean.z, distance}, nothing_seen));
+    keep(job_.history_length, select(seen, Quad<V>{frames, zero, first, deviation}, nothing_seen));
+    keep(job_.fast_history,
+         select(seen, Quad<V>{recent.x, recent.y, recent.z, distance}, nothing_seen));
   }
 
   const D d_{};

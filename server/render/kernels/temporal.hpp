@@ -13,7 +13,7 @@ struct TemporalVisibilityBindings {
   gpu::Read<Stage> previous_history, previous_moments, previous_history_length;
   gpu::Read<Stage> previous_fast_history;
   gpu::Read<Stage> percentiles;  // not by the kernel
-  gpu::Write<Stage> signal, moments, history_length, fast_history;
+  gpu::Write<Stage> signal, history, moments, history_length, fast_history;
 };
 using TemporalVisibilityJob = FrameJob<TemporalVisibilityBindings, shared::TemporalConstants>;
 
@@ -24,7 +24,7 @@ struct TemporalSpecularBindings {
   gpu::Read<Stage> previous_normals, previous_surface, previous_motion, previous_instance;
   gpu::Read<Stage> previous_history, previous_history_length, previous_fast_history;
   gpu::Read<Stage> percentiles;  // not by the kernel
-  gpu::Write<Stage> signal, history_length, fast_history;
+  gpu::Write<Stage> signal, history, history_length, fast_history;
 };
 using TemporalSpecularJob = FrameJob<TemporalSpecularBindings, shared::TemporalConstants>;
 
@@ -33,8 +33,25 @@ template <class Stage>
 struct RectifyBindings {
   gpu::Read<Stage> guide, fast_history;
   gpu::ReadWrite<Stage> signal, history_length;
+  gpu::Write<Stage> history;
 };
-using RectifyJob = gpu::HostPass<RectifyBindings, shared::TemporalConstants>;
+using RectifyJob = FrameJob<RectifyBindings, shared::TemporalConstants>;
+
+/// shaders/denoise/visibility_feedback.comp
+template <class Stage>
+struct VisibilityFeedbackBindings {
+  gpu::Read<Stage> filtered;
+  gpu::Write<Stage> history;
+};
+using VisibilityFeedbackJob = FrameJob<VisibilityFeedbackBindings>;
+
+/// shaders/denoise/specular_feedback.comp
+template <class Stage>
+struct SpecularFeedbackBindings {
+  gpu::Read<Stage> filtered, fast_history;
+  gpu::Write<Stage> history;
+};
+using SpecularFeedbackJob = FrameJob<SpecularFeedbackBindings>;
 
 /// Whether the kernels know this rectification: those by windows and percentiles of the current
 /// frame are left to the shaders.
@@ -44,5 +61,7 @@ void visibility_temporal(const TemporalVisibilityJob& job);
 void specular_temporal(const TemporalSpecularJob& job);
 void visibility_rectify(const RectifyJob& job);
 void specular_rectify(const RectifyJob& job);
+void visibility_feedback(const VisibilityFeedbackJob& job);
+void specular_feedback(const SpecularFeedbackJob& job);
 
 }  // namespace heliograph::render::kernels

@@ -43,11 +43,9 @@ class VisibilityAccumulation {
   HWY_INLINE Quad<V> load(const gpu::HostView& image, int x, int y) const {
     return load4(d_, row_of<const float>(image, y) + 4 * x);
   }
-  HWY_INLINE void store(const gpu::HostView& image, int x, int y, M seen, const Quad<V>& t) const {
-    store4(d_,
-           {hn::IfThenElseZero(seen, t.x), hn::IfThenElseZero(seen, t.y),
-            hn::IfThenElseZero(seen, t.z), hn::IfThenElseZero(seen, t.w)},
-           row_of<float>(image, y) + 4 * x);
+  HWY_INLINE Quad<V> where(M seen, const Quad<V>& t) const {
+    return {hn::IfThenElseZero(seen, t.x), hn::IfThenElseZero(seen, t.y),
+            hn::IfThenElseZero(seen, t.z), hn::IfThenElseZero(seen, t.w)};
   }
 
   HWY_INLINE HistorySample fetch_history(int x, int y) const {
@@ -57,11 +55,11 @@ class VisibilityAccumulation {
     const HistoryTaps<D> taps = history_taps<D>(load(job_.reprojection, x, y));
     const HistoryReader<D> reader(taps, job_.width, job_.height);
     const bool bicubic = (c_.flags & shared::temporal_bicubic) != 0;
-    const Quad<V> signal =
-        bicubic ? reader.bicubic(job_.previous_history) : reader.bilinear(job_.previous_history);
-    const Quad<V> frames = reader.bilinear(job_.previous_history_length);
+    const Quad<V> signal = bicubic ? reader.template bicubic<Fractions>(job_.previous_history)
+                                   : reader.template bilinear<Fractions>(job_.previous_history);
+    const Quad<V> frames = reader.template bilinear<Halves>(job_.previous_history_length);
     r.signal = {signal.x, signal.y};
-    r.moments = reader.bilinear(job_.previous_moments);
+    r.moments = reader.template bilinear<Fractions>(job_.previous_moments);
     r.frames = {frames.x, frames.y};
     // The gradient compares with the long history alone.
     if (c_.rectification != shared::rectification_gradient) r.fast = fetch_fast_history(taps);
@@ -74,7 +72,7 @@ class VisibilityAccumulation {
       const M valid = hn::Gt(taps.weights[i], hn::Zero(d_));
       if (hn::AllFalse(d_, valid)) continue;
       const Pair<V> fast =
-          bounds_.gather(taps.tap_x(i), taps.tap_y(i)).two(job_.previous_fast_history);
+          bounds_.gather(taps.tap_x(i), taps.tap_y(i)).two_halves(job_.previous_fast_history);
       add_weighted<D>(valid, taps.weights[i], fast.x, sum.x);
       add_weighted<D>(valid, taps.weights[i], fast.y, sum.y);
     }
@@ -120,11 +118,15 @@ class VisibilityAccumulation {
         hn::IfThenElse(seen, shadow.value, now.x), hn::IfThenElse(seen, ambient.value, now.y),
         hn::IfThenElseZero(seen, shadow.variance), hn::IfThenElseZero(seen, ambient.variance)};
     store4(d_, signal, row_of<float>(job_.signal, y) + 4 * x);
-    store(job_.moments, x, y, seen, {shadow.first, ambient.first, shadow.second, ambient.second});
-    store(job_.history_length, x, y, seen, {shadow.frames, ambient.frames, zero, zero});
-    hn::StoreInterleaved2(hn::IfThenElseZero(seen, shadow.fast),
-                          hn::IfThenElseZero(seen, ambient.fast), d_,
-                          row_of<float>(job_.fast_history, y) + 2 * x);
+    const Rounding<D> rounding(x, y, job_.frame.sample_index);
+    store_history4<Fractions>(d_, signal, rounding, job_.history, x, y);
+    const Quad<V> moments{shadow.first, ambient.first, shadow.second, ambient.second};
+    store_history4<Fractions>(d_, where(seen, moments), rounding, job_.moments, x, y);
+    const Quad<V> frames{shadow.frames, ambient.frames, zero, zero};
+    store_history4<Halves>(d_, where(seen, frames), rounding, job_.history_length, x, y);
+    const Pair<V> fast{hn::IfThenElseZero(seen, shadow.fast),
+                       hn::IfThenElseZero(seen, ambient.fast)};
+    store_halves2(d_, fast, rounding, job_.fast_history, x, y);
   }
 
   const D d_{};

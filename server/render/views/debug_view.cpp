@@ -24,6 +24,11 @@ float channel(const std::byte* texel, VkFormat format, std::uint32_t index) {
       return load(std::uint32_t{}, 1, 1.0f);
     case VK_FORMAT_R8G8B8A8_UNORM:
       return load(std::uint8_t{}, 4, 1.0f / 255.0f);
+    case VK_FORMAT_R16G16B16A16_UNORM:
+      return load(std::uint16_t{}, 4, 1.0f / 65535.0f);
+    case VK_FORMAT_R16G16_SFLOAT:
+      if (index >= 2) return load(0.0f, 0, 1.0f);
+      [[fallthrough]];
     case VK_FORMAT_R16G16B16A16_SFLOAT: {
       std::uint16_t half;
       std::memcpy(&half, texel + index * 2, 2);
@@ -39,6 +44,7 @@ std::uint32_t channels_of(VkFormat format) {
     case VK_FORMAT_R32_SFLOAT:
     case VK_FORMAT_R32_UINT:
       return 1;
+    case VK_FORMAT_R16G16_SFLOAT:
     case VK_FORMAT_R32G32_SFLOAT:
       return 2;
     default:

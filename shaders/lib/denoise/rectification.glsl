@@ -89,6 +89,8 @@ Box mean_box(Window window, float surfaces, float scale, float least) {
   return variance_box(window, scale * sqrt(surfaces / max(window.count, 1.0)));
 }
 
+Box widened(Box box, float by) { return Box(box.low - by, box.high + by); }
+
 /// Significant change of a neighbourhood: the distance of the box of its mean change from 0.
 vec3 certain_change(Box box) { return max(max(box.low, -box.high), vec3(0.0)); }
 

@@ -9,14 +9,17 @@
 #include "lib/denoise/reprojection.glsl"
 #include "shared/denoise.h"
 
+/// What the next frame goes on from.
+void keep(ivec2 pixel, vec4 value);
+
 const float enough_neighbours = 8.0;  // the pixel itself counts as one
 const float nearby_depth = 0.02;      // of the distance
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D guide;
 layout(set = 1, binding = 1, rg32f) readonly uniform image2D depth_slope;
-layout(set = 1, binding = 2, rgba32f) readonly uniform image2D moments;
-layout(set = 1, binding = 3, rgba32f) readonly uniform image2D history;
+layout(set = 1, binding = 2, MOMENTS_FORMAT) readonly uniform image2D moments;
+layout(set = 1, binding = 3, rgba16f) readonly uniform image2D history;
 layout(set = 1, binding = 4, rgba32f) uniform image2D signal;
 layout(push_constant) uniform Constants { TemporalConstants constants; };
 
@@ -43,7 +46,7 @@ void main() {
       if (guide_is_background(guide_q)) continue;
       Guide there = decode_guide(guide_q);
       vec2 offset = vec2(x, y);
-      vec4 moments_there = imageLoad(moments, tap);
+      vec4 moments_there = moments_of(imageLoad(moments, tap));
       float cosine = dot(here.normal, there.normal);
       float off_plane = plane_distance(here.view_z, slope, curve, there.view_z, offset);
       float weight =
@@ -67,5 +70,7 @@ void main() {
   if ((constants.flags & temporal_mean_variance) != 0u) variance /= max(frames, vec2(1.0));
   vec4 value = with_mean(imageLoad(signal, pixel), first_moment(sum),
                          alone / max(frames, vec2(1.0)));
-  imageStore(signal, pixel, with_variance(value, max(variance, variance_of(value))));
+  value = with_variance(value, max(variance, variance_of(value)));
+  imageStore(signal, pixel, value);
+  keep(pixel, value);
 }

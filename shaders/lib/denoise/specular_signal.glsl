@@ -11,8 +11,9 @@ vec4 with_variance(vec4 signal, vec2 variance) { return vec4(signal.rgb, varianc
 /// Moments know of no colours.
 vec4 with_mean(vec4 signal, vec2 mean, vec2 fraction) { return signal; }
 
-/// Its history: history length in frames, and moments of single samples' luminance.
+/// Its history: history length in frames, and mean and deviation of single samples' luminance.
 vec2 frames_of(vec4 history) { return history.xx; }
+vec4 moments_of(vec4 texel) { return vec4(texel.xyz, dot(texel.zw, texel.zw)); }
 vec2 first_moment(vec4 moments) { return moments.zz; }
 vec2 second_moment(vec4 moments) { return moments.ww; }
 

@@ -13,6 +13,7 @@ vec4 with_mean(vec4 signal, vec2 mean, vec2 fraction) {
 
 /// Its history: history length in frames, and moments of single samples.
 vec2 frames_of(vec4 history) { return history.xy; }
+vec4 moments_of(vec4 texel) { return texel; }
 vec2 first_moment(vec4 moments) { return moments.xy; }
 vec2 second_moment(vec4 moments) { return moments.zw; }
 

@@ -41,9 +41,9 @@ class KernelComparison {
       auto& plan = rig_.plan();
       const auto histories = render::declare_sample_histories(plan);
       visibility_.push_back(
-          render::accumulate_visibility(plan, in, guide, histories, raw_visibility_, false));
+          render::accumulate_visibility(plan, in, guide, histories, raw_visibility_));
       specular_.push_back(
-          render::accumulate_specular(plan, in, gbuffer, guide, histories, raw_specular_, false));
+          render::accumulate_specular(plan, in, gbuffer, guide, histories, raw_specular_));
       render::estimate_visibility_variance(plan, in, gbuffer, guide, visibility_.back());
       render::estimate_specular_variance(plan, in, gbuffer, guide, specular_.back());
     }
@@ -79,7 +79,7 @@ class KernelComparison {
     for (const auto& signals : {visibility_, specular_}) {
       for (const auto image :
            {&render::AccumulatedSignal::signal, &render::AccumulatedSignal::moments,
-            &render::AccumulatedSignal::history_length}) {
+            &render::AccumulatedSignal::history_length, &render::AccumulatedSignal::history}) {
         all.push_back(compare(rig_.read(signals[0].*image), rig_.read(signals[1].*image)));
       }
     }

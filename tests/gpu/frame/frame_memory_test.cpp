@@ -46,7 +46,7 @@ class FrameMemory : public testing::Test {
   };
 
   static double bytes_per_pixel(const protocol::Settings& settings, bool shares) {
-    constexpr VkExtent2D extent{640, 360};
+    constexpr VkExtent2D extent{1280, 720};
     Frame frame(settings, extent, shares);
     frame.run(0);
     return static_cast<double>(frame.rig.plan().memory_bytes()) / (extent.width * extent.height);
@@ -160,8 +160,8 @@ TEST_F(FrameMemory, WhatIsTurnedOnAgainReadsNothingThatWasLeftOut) {
 }
 
 TEST_F(FrameMemory, PixelOfADefaultFrameTakesHalfOfItsResources) {
-  EXPECT_LT(bytes_per_pixel({}, true), 480.0);
-  EXPECT_GT(bytes_per_pixel({}, false), 750.0);
+  EXPECT_LT(bytes_per_pixel({}, true), 325.0);
+  EXPECT_GT(bytes_per_pixel({}, false), 650.0);
 }
 
 TEST_F(FrameMemory, CanceledFrameLeavesHistoriesAsTheyWere) {

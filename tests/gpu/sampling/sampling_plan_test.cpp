@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/gtc/packing.hpp>
 #include <optional>
 
 #include "render/passes/sampling/plan_samples.hpp"
@@ -44,16 +45,17 @@ class PlannedFrames {
 
   template <class HistoryOfPixel>
   void set(const HistoryOfPixel& history_of) {
-    std::vector<glm::vec4> reprojection(pixels), lengths(pixels), distance(pixels), noise(pixels);
+    std::vector<glm::vec4> reprojection(pixels);
+    std::vector<std::uint64_t> lengths(pixels), distance(pixels), noise(pixels);
     std::vector<std::uint32_t> surface(pixels);
     for (std::size_t i = 0; i < pixels; ++i) {
       const History history = history_of(i);
       const auto x = static_cast<float>(i % extent.width), y = static_cast<float>(i / extent.width);
       reprojection[i] = {x + 0.6f, y + 0.7f, history.known ? 15.0f : 0.0f, 0.0f};
-      lengths[i] = glm::vec4(history.frames);
-      distance[i].w = 1.5f;
+      lengths[i] = glm::packHalf4x16(glm::vec4(history.frames));
+      distance[i] = glm::packHalf4x16(glm::vec4(0.0f, 0.0f, 0.0f, 1.5f));
       const float of_mean = history.variance / history.frames;
-      noise[i] = {0.5f, 0.5f, of_mean, of_mean};
+      noise[i] = glm::packUnorm4x16(glm::vec4(0.5f, 0.5f, of_mean, of_mean));
       surface[i] = packed_surface(history);
     }
     rig_.fill(reprojection_, reprojection);
@@ -92,15 +94,19 @@ class PlannedFrames {
   }
 
  private:
-  gpu::ImageRef four(const char* name) {
-    return rig_.input(name, VK_FORMAT_R32G32B32A32_SFLOAT, std::vector(pixels, glm::vec4(0.0f)));
+  gpu::ImageRef halves(const char* name) {
+    return rig_.input(name, VK_FORMAT_R16G16B16A16_SFLOAT, std::vector<std::uint64_t>(pixels));
   }
 
   const scene::Camera camera_ = look({0, 0, 3}, {0, 0, 0});
   FrameRig rig_{SceneBuilder().build(), camera_, {.extent = extent}};
-  gpu::ImageRef reprojection_ = four("reprojection"), visibility_length_ = four("lengths"),
-                specular_length_ = four("specular_lengths"), specular_distance_ = four("distance"),
-                visibility_ = four("visibility_before");
+  gpu::ImageRef reprojection_ = rig_.input("reprojection", VK_FORMAT_R32G32B32A32_SFLOAT,
+                                           std::vector(pixels, glm::vec4(0.0f)));
+  gpu::ImageRef visibility_length_ = halves("lengths"),
+                specular_length_ = halves("specular_lengths"),
+                specular_distance_ = halves("distance");
+  gpu::ImageRef visibility_ = rig_.input("visibility_before", VK_FORMAT_R16G16B16A16_UNORM,
+                                         std::vector<std::uint64_t>(pixels));
   gpu::ImageRef surface_ =
       rig_.input("surface", VK_FORMAT_R8G8B8A8_UNORM, std::vector<std::uint32_t>(pixels));
   gpu::ImageRef planned_;

@@ -73,18 +73,18 @@ class Planning {
 
     const TexelGather<D> texels =
         bounds_.gather(hn::ConvertTo(di_, before_x), hn::ConvertTo(di_, before_y));
-    const Pair<V> frames = texels.first_two(job_.visibility_length);
-    const Quad<V> visibility = texels.four(job_.visibility);
-    const V reflected = texels.first_two(job_.specular_length).x;
-    const V away = hn::Abs(texels.last_of_four(job_.specular_distance));
+    const Pair<V> frames = texels.template half_of_four_halves<0>(job_.visibility_length);
+    const Pair<V> noise = texels.template half_of_four_fractions<1>(job_.visibility);
+    const V reflected = texels.template half_of_four_halves<0>(job_.specular_length).x;
+    const V away = hn::Abs(texels.template half_of_four_halves<1>(job_.specular_distance).y);
     const auto packed =
         hn::LoadU(hn::RebindToUnsigned<D>(), row_of<const std::uint32_t>(job_.surface, y) + x);
     const M mirrors = hn::Or(hn::Lt(unorm8<0>(d_, packed), set(shared::plan_smooth_roughness)),
                              hn::Gt(unorm8<8>(d_, packed), set(shared::plan_metallic)));
     const auto most = [&](shared::uint count) HWY_ATTR { return whole(static_cast<int>(count)); };
     const VI now = turn(x, y, 0);
-    const MI lit = is_sampled(counted(frames.x, visibility.z), most(c.visibility_most), now);
-    const MI open = is_sampled(counted(frames.y, visibility.w), most(c.visibility_most), now);
+    const MI lit = is_sampled(counted(frames.x, noise.x), most(c.visibility_most), now);
+    const MI open = is_sampled(counted(frames.y, noise.y), most(c.visibility_most), now);
     const MI mirrored = is_sampled(
         hn::IfThenElse(mirrors, reflected, reflected * set(shared::plan_quiet_factor)),
         hn::IfThenElse(hn::RebindMask(di_, mirrors), most(c.mirrors_most), most(c.specular_most)),

@@ -10,10 +10,10 @@ template <class Stage>
 struct SamplingPlanBindings {
   gpu::Read<Stage> reprojection;       // rgba32f
   gpu::Read<Stage> surface;            // rgba8
-  gpu::Read<Stage> visibility_length;  // rgba32f: histories one frame ago
-  gpu::Read<Stage> specular_length;    // rgba32f
-  gpu::Read<Stage> specular_distance;  // rgba32f, w: distance to what is reflected
-  gpu::Read<Stage> visibility;         // rgba32f, zw: variances one frame ago
+  gpu::Read<Stage> visibility_length;  // rgba16f: histories one frame ago
+  gpu::Read<Stage> specular_length;    // rgba16f
+  gpu::Read<Stage> specular_distance;  // rgba16f, w: distance to what is reflected
+  gpu::Read<Stage> visibility;         // rgba16, zw: variances one frame ago
   gpu::Write<Stage> planned;           // r32ui
 };
 using SamplingPlanJob = FrameJob<SamplingPlanBindings, shared::SamplingPlanConstants>;

@@ -37,15 +37,18 @@ class TexelGather {
     if (together_) return hn::LoadU(di_, row_of<const int>(image, first_y_) + first_x_);
     return hn::GatherIndex(di_, row_of<const int>(image, 0), index<1>(image));
   }
-  HWY_INLINE Pair<V> two(const gpu::HostView& image) const {
-    if (together_) return load2(d_, row_of<const float>(image, first_y_) + 2 * first_x_);
-    const float* const texels = row_of<const float>(image, 0);
-    const VI at = index<2>(image);
-    return {hn::GatherIndex(d_, texels, at), hn::GatherIndex(d_, texels + 1, at)};
+  HWY_INLINE Pair<V> two_halves(const gpu::HostView& image) const { return halves(word(image)); }
+  /// The first or second two channels of four half floats, or of four fractions.
+  template <int second>
+  HWY_INLINE Pair<V> half_of_four_halves(const gpu::HostView& image) const {
+    return halves(half_of_four<second>(image));
   }
-  HWY_INLINE Quad<V> four(const gpu::HostView& image) const {
-    if (together_) return load4(d_, row_of<const float>(image, first_y_) + 4 * first_x_);
-    return gather4(d_, row_of<const float>(image, 0), index<4>(image));
+  template <int second>
+  HWY_INLINE Pair<V> half_of_four_fractions(const gpu::HostView& image) const {
+    const VI words = half_of_four<second>(image);
+    const V unit = hn::Set(d_, 1.0f / 65535.0f);
+    return {hn::ConvertTo(d_, hn::And(words, hn::Set(di_, 0xffff))) * unit,
+            hn::ConvertTo(d_, hn::And(hn::ShiftRight<16>(words), hn::Set(di_, 0xffff))) * unit};
   }
   HWY_INLINE Triple<V> first_three(const gpu::HostView& image) const {
     if (!together_) return gather3(d_, row_of<const float>(image, 0), index<4>(image));
@@ -68,6 +71,20 @@ class TexelGather {
   }
 
  private:
+  HWY_INLINE Pair<V> halves(VI words) const {
+    const auto bits = hn::BitCast(hn::RebindToUnsigned<D>(), words);
+    return {half_float(d_, bits), half_float(d_, hn::ShiftRight<16>(bits))};
+  }
+  template <int second>
+  HWY_INLINE VI half_of_four(const gpu::HostView& image) const {
+    if (together_) {
+      VI first_words, second_words;
+      hn::LoadInterleaved2(di_, row_of<const int>(image, first_y_) + 2 * first_x_, first_words,
+                           second_words);
+      return second ? second_words : first_words;
+    }
+    return hn::GatherIndex(di_, row_of<const int>(image, 0) + second, index<2>(image));
+  }
   /// In words of 32 bits, `channels` to a texel.
   template <int channels>
   HWY_INLINE VI index(const gpu::HostView& image) const {

@@ -16,14 +16,11 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const AtrousInpu
   const bool halves_at_once = separable && plan.uses_host_kernels();
   // The second half of a separable iteration does not read the image that it writes: all of them
   // can write the same one.
-  const bool result_is_written = !feedback || feedback->level != last;
   std::array<gpu::ImageRef, 2> between{result, result};
   if (halves_at_once) {
     if (last > 0) between[(last + 1) % 2] = image(config.buffers.even);
   } else {
-    if (last > 0 && !(separable && result_is_written)) {
-      between[0] = between[1] = image(config.buffers.even);
-    }
+    if (last > 0 && !separable) between[0] = between[1] = image(config.buffers.even);
     if (last > 1 && !separable) between[1] = image(config.buffers.odd);
   }
   const bool needs_half = separable && !halves_at_once;
@@ -54,8 +51,7 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const AtrousInpu
   gpu::ImageRef signal = input.signal;
   const auto side = static_cast<int>(config.pixels_per_texel);
   for (int level = 0; level <= last; ++level) {
-    gpu::ImageRef to = level == last ? result : between[level % 2];
-    if (feedback && feedback->level == level) to = feedback->image;
+    const gpu::ImageRef to = level == last ? result : between[level % 2];
     const std::string name = config.name + "." + std::to_string(level);
     if (separable) {
       // Which half comes first changes from iteration to iteration and frame to frame: otherwise
@@ -75,6 +71,7 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const AtrousInpu
       pass(name, signal, to, [level, side] { return KernelShape{level, 2, 2, false, side}; });
     }
     signal = to;
+    if (feedback && feedback->level == level) feedback->keep(signal);
   }
   return signal;
 }

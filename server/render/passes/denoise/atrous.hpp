@@ -75,10 +75,10 @@ struct AtrousConfig {
   std::uint32_t pixels_per_texel = 1;  // of the images, along each axis
 };
 
-/// An image that the result of iteration `level` is written to, for the next frame.
+/// Gets the result of iteration `level`, for the next frame.
 struct Feedback {
   int level;
-  gpu::ImageRef image;
+  std::function<void(gpu::ImageRef)> keep;
 };
 
 /// The a-trous filter (Dammertz et al. 2010; paper sections 3.2 and 3.3): `iterations` passes, or

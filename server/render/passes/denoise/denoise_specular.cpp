@@ -74,14 +74,16 @@ gpu::ImageRef denoise_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
 
   gpu::ImageRef signal = tone_compressed ? compress(plan, in, noisy) : noisy;
   const AccumulatedSignal accumulated =
-      accumulate_specular(plan, in, gbuffer, guide, histories, signal, feedback);
+      accumulate_specular(plan, in, gbuffer, guide, histories, signal);
   signal = accumulated.signal;
   if (blurring.enabled) {
+    const auto feed_back = [&](gpu::ImageRef filtered) {
+      feed_specular_back(plan, in, accumulated, filtered);
+    };
     estimate_specular_variance(plan, in, gbuffer, guide, accumulated);
-    signal = blur(
-        plan, in, {guide.surface, gbuffer.depth_slope, accumulated.signal},
-        specular_atrous_config(in),
-        feedback ? std::optional(Feedback{blurring.feedback, accumulated.history}) : std::nullopt);
+    signal = blur(plan, in, {guide.surface, gbuffer.depth_slope, accumulated.signal},
+                  specular_atrous_config(in),
+                  feedback ? std::optional(Feedback{blurring.feedback, feed_back}) : std::nullopt);
   }
   return tone_compressed ? expand(plan, in, signal) : signal;
 }

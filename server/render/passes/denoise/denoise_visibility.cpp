@@ -116,16 +116,17 @@ gpu::ImageRef denoise_visibility(gpu::FramePlan& plan, const FrameInputs& in,
   const bool feedback =
       blurring.enabled && blurring.feedback >= 0 && blurring.feedback < blurring.iterations;
 
-  const AccumulatedSignal accumulated =
-      accumulate_visibility(plan, in, guide, histories, noisy, feedback);
+  const AccumulatedSignal accumulated = accumulate_visibility(plan, in, guide, histories, noisy);
   if (!blurring.enabled) return accumulated.signal;
 
+  const auto feed_back = [&](gpu::ImageRef filtered) {
+    feed_visibility_back(plan, in, accumulated, filtered);
+  };
   estimate_visibility_variance(plan, in, gbuffer, guide, accumulated);
   const AtrousInput input{guide.surface, gbuffer.depth_slope, accumulated.signal};
   if (blurring.half_resolution && !feedback) return blur_at_half_size(plan, in, input);
-  return blur(
-      plan, in, input, visibility_atrous_config(in, visibility_atrous_buffers),
-      feedback ? std::optional(Feedback{blurring.feedback, accumulated.history}) : std::nullopt);
+  return blur(plan, in, input, visibility_atrous_config(in, visibility_atrous_buffers),
+              feedback ? std::optional(Feedback{blurring.feedback, feed_back}) : std::nullopt);
 }
 
 }  // namespace heliograph::render

@@ -10,6 +10,8 @@ namespace heliograph::render {
 namespace {
 
 using formats::four_floats;
+using formats::four_fractions;
+using formats::four_halves;
 
 /// The spread of brightness in every tile of 8x8 pixels of `noisy`, for the rectification that
 /// needs it; otherwise any image, which is bound and not read.
@@ -30,14 +32,14 @@ bool kernels_know(protocol::Rectification rectification) {
   return kernels::can_accumulate(static_cast<std::uint32_t>(rectification));
 }
 
-/// Of visibility. The gradient's changes are of one frame, in one image that is bound as the
-/// previous one, too, and not read.
-gpu::History declare_fast_history(gpu::FramePlan& plan, protocol::Rectification rectification) {
-  constexpr VkFormat format = VK_FORMAT_R32G32_SFLOAT;
-  const auto name = visibility_temporal_buffers.fast_history.name;
-  if (rectification != protocol::Rectification::gradient) return plan.history(name, format);
-  const gpu::ImageRef changes = plan.image(name, format);
-  return {changes, changes};
+/// The gradient's changes are of one frame: they need no previous image. `bound` is, where there is
+/// one of the format, and not read.
+gpu::History declare_fast_history(gpu::FramePlan& plan, const BufferDescription& buffer,
+                                  VkFormat format, protocol::Rectification rectification,
+                                  std::optional<gpu::ImageRef> bound) {
+  if (rectification != protocol::Rectification::gradient) return plan.history(buffer.name, format);
+  const gpu::ImageRef changes = plan.image(buffer.name, format);
+  return {changes, bound.value_or(changes)};
 }
 
 /// Whether a pass of its own rectifies, after accumulation.
@@ -48,23 +50,23 @@ bool rectifies_after(protocol::Rectification mode) {
 }  // namespace
 
 SampleHistories declare_sample_histories(gpu::FramePlan& plan) {
-  return {plan.history(visibility_temporal_buffers.history.name, four_floats),
-          plan.history(visibility_temporal_buffers.history_length.name, four_floats),
-          plan.history(specular_temporal_buffers.history_length.name, four_floats),
-          plan.history(specular_temporal_buffers.fast_history.name, four_floats)};
+  return {plan.history(visibility_temporal_buffers.history.name, four_fractions),
+          plan.history(visibility_temporal_buffers.history_length.name, four_halves),
+          plan.history(specular_temporal_buffers.history.name, four_halves),
+          plan.history(specular_temporal_buffers.history_length.name, four_halves)};
 }
 
 AccumulatedSignal accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in,
                                         const Guide& guide, const SampleHistories& histories,
-                                        gpu::ImageRef noisy, bool feedback) {
+                                        gpu::ImageRef noisy) {
   const auto& buffers = visibility_temporal_buffers;
   const gpu::History history = histories.visibility;
-  const gpu::History moments = plan.history(buffers.moments.name, four_floats);
+  const gpu::History moments = plan.history(buffers.moments.name, four_fractions);
   const gpu::History history_length = histories.visibility_length;
-  const gpu::ImageRef signal =
-      feedback ? plan.image(buffers.signal.name, four_floats) : history.current;
+  const gpu::ImageRef signal = plan.image(buffers.signal.name, four_floats);
   const auto& settings = in.settings.shadow_temporal;
-  const gpu::History fast_history = declare_fast_history(plan, settings.rectification);
+  const gpu::History fast_history = declare_fast_history(
+      plan, buffers.fast_history, formats::two_halves, settings.rectification, std::nullopt);
   const auto constants = [in, &settings] { return temporal_constants(in, settings); };
   const gpu::ImageRef percentiles =
       measure_percentiles(plan, guide, noisy, buffers.percentiles,
@@ -81,6 +83,7 @@ AccumulatedSignal accumulate_visibility(gpu::FramePlan& plan, const FrameInputs&
            .previous_fast_history = fast_history.previous,
            .percentiles = percentiles,
            .signal = signal,
+           .history = history.current,
            .moments = moments.current,
            .history_length = history_length.current,
            .fast_history = fast_history.current})
@@ -93,30 +96,30 @@ AccumulatedSignal accumulate_visibility(gpu::FramePlan& plan, const FrameInputs&
         .bind<kernels::RectifyBindings>({.guide = guide.surface,
                                          .fast_history = fast_history.current,
                                          .signal = signal,
-                                         .history_length = history_length.current})
+                                         .history_length = history_length.current,
+                                         .history = history.current})
         .constants(constants)
         .dispatch(gpu::each_pixel())
-        .host(kernels::visibility_rectify)
+        .host(kernels::visibility_rectify, in.constants)
         // Visibility does not depend on the view: it changes only where geometry or lights move.
         .when([&settings, &motion = in.scene_motion] {
           return settings.rectification != protocol::Rectification::gradient ||
                  motion.geometry_moved;
         });
   }
-  return {signal, moments.current, history_length.current, history.current};
+  return {signal, moments.current, history_length.current, fast_history.current, history.current};
 }
 
 AccumulatedSignal accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in,
                                       const GBuffer& gbuffer, const Guide& guide,
-                                      const SampleHistories& histories, gpu::ImageRef noisy,
-                                      bool feedback) {
+                                      const SampleHistories& histories, gpu::ImageRef noisy) {
   const auto& buffers = specular_temporal_buffers;
-  const gpu::History history = plan.history(buffers.history.name, four_floats);
+  const gpu::History history = histories.specular;
   const gpu::History history_length = histories.specular_length;
-  const gpu::History fast_history = histories.specular_fast;
-  const gpu::ImageRef signal =
-      feedback ? plan.image(buffers.signal.name, four_floats) : history.current;
+  const gpu::ImageRef signal = plan.image(buffers.signal.name, four_floats);
   const auto& settings = in.settings.specular_temporal;
+  const gpu::History fast_history = declare_fast_history(plan, buffers.fast_history, four_halves,
+                                                         settings.rectification, history.previous);
   const auto constants = [in, &settings] {
     shared::TemporalConstants made = temporal_constants(in, settings);
     if (settings.virtual_motion) made.flags |= shared::temporal_virtual_motion;
@@ -141,6 +144,7 @@ AccumulatedSignal accumulate_specular(gpu::FramePlan& plan, const FrameInputs& i
                                                 .previous_fast_history = fast_history.previous,
                                                 .percentiles = percentiles,
                                                 .signal = signal,
+                                                .history = history.current,
                                                 .history_length = history_length.current,
                                                 .fast_history = fast_history.current})
       .constants(constants)
@@ -152,29 +156,52 @@ AccumulatedSignal accumulate_specular(gpu::FramePlan& plan, const FrameInputs& i
         .bind<kernels::RectifyBindings>({.guide = guide.surface,
                                          .fast_history = fast_history.current,
                                          .signal = signal,
-                                         .history_length = history_length.current})
+                                         .history_length = history_length.current,
+                                         .history = history.current})
         .constants(constants)
         .dispatch(gpu::each_pixel())
-        .host(kernels::specular_rectify)
+        .host(kernels::specular_rectify, in.constants)
         // A static view's second frame is the first that samples every pixel.
         .when([&settings, &clock = in.clock] {
           return settings.rectification != protocol::Rectification::gradient || clock.samples <= 1;
         });
   }
-  return {signal, history_length.current, history_length.current, history.current};
+  return {signal, history_length.current, history_length.current, fast_history.current,
+          history.current};
+}
+
+void feed_visibility_back(gpu::FramePlan& plan, const FrameInputs& in,
+                          const AccumulatedSignal& visibility, gpu::ImageRef filtered) {
+  plan.pass("visibility.feedback", in.program(shaders::visibility_feedback))
+      .bind<kernels::VisibilityFeedbackBindings>(
+          {.filtered = filtered, .history = visibility.history})
+      .dispatch(gpu::each_pixel())
+      .host(kernels::visibility_feedback, in.constants);
+}
+
+void feed_specular_back(gpu::FramePlan& plan, const FrameInputs& in,
+                        const AccumulatedSignal& specular, gpu::ImageRef filtered) {
+  plan.pass("specular.feedback", in.program(shaders::specular_feedback))
+      .bind<kernels::SpecularFeedbackBindings>({.filtered = filtered,
+                                                .fast_history = specular.fast_history,
+                                                .history = specular.history})
+      .dispatch(gpu::each_pixel())
+      .host(kernels::specular_feedback, in.constants);
 }
 
 namespace {
 
 gpu::PassBuilder variance_pass(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                                const Guide& guide, const AccumulatedSignal& accumulated,
-                               const char* name, gpu::ProgramSource program, const auto& settings) {
+                               std::optional<gpu::ImageRef> history, const char* name,
+                               gpu::ProgramSource program, const auto& settings) {
   gpu::PassBuilder pass = plan.pass(name, std::move(program));
   pass.bind<kernels::SpatialVarianceBindings>({.guide = guide.surface,
                                                .depth_slope = gbuffer.depth_slope,
                                                .moments = accumulated.moments,
                                                .history_length = accumulated.history_length,
-                                               .signal = accumulated.signal})
+                                               .signal = accumulated.signal,
+                                               .history = history})
       .constants([in, &settings] { return temporal_constants(in, settings); })
       .dispatch(gpu::each_pixel())
       .when([&settings] { return settings.spatial_variance_frames > 0; });
@@ -186,14 +213,14 @@ gpu::PassBuilder variance_pass(gpu::FramePlan& plan, const FrameInputs& in, cons
 void estimate_visibility_variance(gpu::FramePlan& plan, const FrameInputs& in,
                                   const GBuffer& gbuffer, const Guide& guide,
                                   const AccumulatedSignal& visibility) {
-  variance_pass(plan, in, gbuffer, guide, visibility, "visibility.variance",
+  variance_pass(plan, in, gbuffer, guide, visibility, visibility.history, "visibility.variance",
                 in.program(shaders::visibility_variance), in.settings.shadow_temporal)
       .host(kernels::visibility_variance, in.constants);
 }
 
 void estimate_specular_variance(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                                 const Guide& guide, const AccumulatedSignal& specular) {
-  variance_pass(plan, in, gbuffer, guide, specular, "specular.variance",
+  variance_pass(plan, in, gbuffer, guide, specular, std::nullopt, "specular.variance",
                 in.program(shaders::specular_variance), in.settings.specular_temporal)
       .host(kernels::specular_variance, in.constants);
 }

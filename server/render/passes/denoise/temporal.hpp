@@ -53,13 +53,14 @@ inline constexpr struct SpecularTemporalBuffers {
       "Tenth and ninetieth percentile of the reflections' brightness in every tile of 8x8 pixels."};
   BufferDescription history{"specular.history", ViewColors::radiance,
                             "Accumulated reflections, demodulated, which the next frame goes on "
-                            "from; variance of their brightness (w)."};
+                            "from; distance to what they show (w), metres, negative where no "
+                            "sample was taken."};
   BufferDescription history_length{
       .name = "specular.history_length",
       .colors = ViewColors::heat,
       .description =
-          "Frames in the history; how far rectification moved it; first and second "
-          "moments of the brightness (zw).",
+          "Frames in the history; how far rectification moved it; mean and deviation of the "
+          "brightness of single samples (zw).",
       .aspects = specular_history_length_aspects};
   BufferDescription fast_history{"specular.fast_history", ViewColors::radiance,
                                  "Reflections of the last few frames alone, demodulated."};
@@ -74,8 +75,8 @@ inline constexpr struct SpecularTemporalBuffers {
 struct SampleHistories {
   gpu::History visibility;
   gpu::History visibility_length;
+  gpu::History specular;
   gpu::History specular_length;
-  gpu::History specular_fast;
 };
 SampleHistories declare_sample_histories(gpu::FramePlan& plan);
 
@@ -84,22 +85,27 @@ struct AccumulatedSignal {
   gpu::ImageRef signal;          // the mean and the variance of its noise
   gpu::ImageRef moments;         // of single samples
   gpu::ImageRef history_length;  // frames, and how far rectification moved the mean
-  /// What the next frame goes on from: a later pass must write it, unless it is `signal` itself.
+  gpu::ImageRef fast_history;    // of the last few frames alone, or how far this frame is from it
+  /// What the next frame goes on from: `signal` in 16 bits a channel.
   gpu::ImageRef history;
 };
 
-/// Shadow and ambient visibility (x and y; variances z and w). With `feedback` a later pass writes
-/// the history.
+/// Shadow and ambient visibility (x and y; variances z and w).
 AccumulatedSignal accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in,
                                         const Guide& guide, const SampleHistories& histories,
-                                        gpu::ImageRef noisy, bool feedback);
+                                        gpu::ImageRef noisy);
 
-/// Demodulated reflections: rgb, and the variance of their luminance in w. The moments lie beside
-/// the length of the history, z and w of `history_length`.
+/// Demodulated reflections: rgb, and the variance of their luminance in w. Mean and deviation of
+/// samples lie beside the length of the history, z and w of `history_length`.
 AccumulatedSignal accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in,
                                       const GBuffer& gbuffer, const Guide& guide,
-                                      const SampleHistories& histories, gpu::ImageRef noisy,
-                                      bool feedback);
+                                      const SampleHistories& histories, gpu::ImageRef noisy);
+
+/// Makes `filtered`, a result of the blur, the history that the next frame goes on from.
+void feed_visibility_back(gpu::FramePlan& plan, const FrameInputs& in,
+                          const AccumulatedSignal& visibility, gpu::ImageRef filtered);
+void feed_specular_back(gpu::FramePlan& plan, const FrameInputs& in,
+                        const AccumulatedSignal& specular, gpu::ImageRef filtered);
 
 /// Gives pixels with a short history the variance of their neighbours (SVGF, section 4.2).
 void estimate_visibility_variance(gpu::FramePlan& plan, const FrameInputs& in,

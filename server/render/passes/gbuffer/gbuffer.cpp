@@ -91,7 +91,6 @@ GBuffer declare_gbuffer(gpu::FramePlan& plan, std::uint32_t features) {
   gbuffer.emissive = image(buffers.emissive, 4);
   gbuffer.depth_slope = image(buffers.depth_slope, 5);
   gbuffer.instance = history(buffers.instance, 6, gbuffer.previous_instance);
-  gbuffer.depth = plan.image("gbuffer.depth", VK_FORMAT_D32_SFLOAT);
   return gbuffer;
 }
 
@@ -110,7 +109,7 @@ GBuffer rasterize_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
       .color(gbuffer.depth_slope, nothing)
       .color(gbuffer.instance, nothing);
   if (in.scene.features & shared::scene_layers) pass.color(gbuffer.layers, nothing);
-  pass.depth(gbuffer.depth, 0.0f)
+  pass.depth(plan.image("gbuffer.depth", VK_FORMAT_D32_SFLOAT), 0.0f)
       .constants(shared::DrawConstants{})  // every draw pushes its own
       .draw([in](VkCommandBuffer commands, VkPipelineLayout layout) {
         const Frustum frustum(in.constants.view_projection);

@@ -64,7 +64,6 @@ struct GBuffer {
   gpu::ImageRef emissive;  // linear radiance
   gpu::ImageRef depth_slope;  // change of view Z per pixel in x and y
   gpu::ImageRef instance;     // instance + 1, 0: none
-  gpu::ImageRef depth;        // reversed
 
   // The frame before, in the same encoding.
   gpu::ImageRef previous_normals;

@@ -7,6 +7,7 @@
 #define HELIOGRAPH_KERNELS_HISTORY_READER_HPP
 #endif
 
+#include "render/kernels/simd/denoise/history_texels.hpp"
 #include "render/kernels/simd/history.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -26,6 +27,7 @@ HWY_INLINE void cubic_weights(V f, V (&weights)[4]) {
 }
 
 /// Four channels of one pixel.
+template <class Format>
 class Texel {
   using Tag = hn::CappedTag<float, 4>;
   using V = hn::Vec<Tag>;
@@ -33,9 +35,18 @@ class Texel {
   static constexpr int parts = 4 / lanes;
 
  public:
-  static HWY_INLINE Texel load(const float* from) {
+  static HWY_INLINE Texel load(const std::uint16_t* from) {
+    const hn::Rebind<std::uint16_t, Tag> narrow;
     Texel t;
-    for (int i = 0; i < parts; ++i) t.part_[i] = hn::LoadU(Tag(), from + i * lanes);
+    for (int i = 0; i < parts; ++i) {
+      t.part_[i] = Format::widened(Tag(), hn::LoadU(narrow, from + i * lanes));
+    }
+    if constexpr (parts == 1) {
+      t.part_[0] = Format::linear(Tag(), t.part_[0]);
+    } else {
+      const auto of = Format::linear(Quad<V>{t.part_[0], t.part_[1], t.part_[2], t.part_[3]});
+      t.part_[3] = of.w;
+    }
     return t;
   }
   HWY_INLINE void store(float* to) const {
@@ -68,12 +79,15 @@ class Texel {
 };
 
 /// A vector of channels as they lie in memory, of several pixels.
-template <class D>
+template <class Format, class D>
 class Channels {
   using V = hn::Vec<D>;
 
  public:
-  static HWY_INLINE Channels load(const float* from) { return {hn::LoadU(D(), from)}; }
+  static HWY_INLINE Channels load(const std::uint16_t* from) {
+    const V widened = Format::widened(D(), hn::LoadU(hn::Rebind<std::uint16_t, D>(), from));
+    return {Format::linear(D(), widened)};
+  }
   HWY_INLINE void store(float* to) const { hn::StoreU(values_, D(), to); }
   HWY_INLINE Channels times(V weight) const { return {hn::Mul(values_, weight)}; }
   /// this + c * weight
@@ -89,10 +103,12 @@ class Channels {
   V values_;
 };
 
-/// Reads rgba32f images of the frame before. Pixels that moved together lie side by side there and
-/// are read in vectors of their channels. Where they moved by different amounts, vectors of pixels
-/// would have to gather each channel of each tap: there a vector holds the channels of one, and
-/// pixels take turns. Images must be finite, for taps without a weight are read, too.
+/// Reads rgba16f images (as Halves or MeanAndDeviation) and rgba16 images (as Fractions) of the
+/// frame before. Pixels
+/// that moved together lie side by side there and are read in vectors of their channels. Where they
+/// moved by different amounts, vectors of pixels would have to gather each channel of each tap:
+/// there a vector holds the channels of one, and pixels take turns. Images must be finite, for taps
+/// without a weight are read, too.
 template <class D>
 class HistoryReader {
   using V = hn::Vec<D>;
@@ -130,22 +146,25 @@ class HistoryReader {
   }
 
   /// The mean of the taps.
+  template <class Format>
   HWY_INLINE Quad<V> bilinear(const gpu::HostView& image) const {
-    if (static_) return load4(d_, texel(image, 0, 1, 1));
-    if (together_) return mean_together(image);
-    return read([&](int lane) HWY_ATTR { return mean(image, lane); });
+    if (static_) return here<Format>(image);
+    if (together_) return in_units<Format>(mean_together<Format>(image));
+    return in_units<Format>(read([&](int lane) HWY_ATTR { return mean<Format>(image, lane); }));
   }
   /// fetch_history_bicubic() of the shaders where all taps are valid, the mean elsewhere.
+  template <class Format>
   HWY_INLINE Quad<V> bicubic(const gpu::HostView& image) const {
-    if (static_) return load4(d_, texel(image, 0, 1, 1));
+    if (static_) return here<Format>(image);
     if (together_) {
-      const Quad<V> cubic = cubic_together(image);
-      if (hn::AllTrue(d_, taps_.whole)) return cubic;
-      return select(taps_.whole, cubic, mean_together(image));
+      const Quad<V> cubic = cubic_together<Format>(image);
+      const bool whole = hn::AllTrue(d_, taps_.whole);
+      return in_units<Format>(whole ? cubic
+                                    : select(taps_.whole, cubic, mean_together<Format>(image)));
     }
-    return read([&](int lane) HWY_ATTR {
-      return whole_[lane] != 0.0f ? cubic(image, lane) : mean(image, lane);
-    });
+    return in_units<Format>(read([&](int lane) HWY_ATTR {
+      return whole_[lane] != 0.0f ? cubic<Format>(image, lane) : mean<Format>(image, lane);
+    }));
   }
 
  private:
@@ -160,8 +179,18 @@ class HistoryReader {
       hn::StoreU(at, di_, to[i]);
     }
   }
-  HWY_INLINE const float* texel(const gpu::HostView& image, int lane, int i, int j) const {
-    return row_of<const float>(image, rows_[j][lane]) + 4 * columns_[i][lane];
+  HWY_INLINE const std::uint16_t* texel(const gpu::HostView& image, int lane, int i, int j) const {
+    return row_of<const std::uint16_t>(image, rows_[j][lane]) + 4 * columns_[i][lane];
+  }
+  template <class Format>
+  HWY_INLINE Quad<V> here(const gpu::HostView& image) const {
+    return load_history4<Format>(d_, image, columns_[1][0], rows_[1][0]);
+  }
+  template <class Format>
+  HWY_INLINE Quad<V> in_units(const Quad<V>& t) const {
+    if constexpr (Format::unit == 1.0f) return t;
+    const V unit = hn::Set(d_, Format::unit);
+    return {t.x * unit, t.y * unit, t.z * unit, t.w * unit};
   }
 
   /// What `value` makes of each part of the texels, of pixels that moved together: it gets where
@@ -178,10 +207,12 @@ class HistoryReader {
     return load4(d_, texels);
   }
 
+  template <class Format>
   HWY_INLINE Quad<V> mean_together(const gpu::HostView& image) const {
     return read_together([&](int part, const auto& spread) HWY_ATTR {
-      const auto at = [&](int i, int j)
-                          HWY_ATTR { return Channels<D>::load(texel(image, 0, i, j) + part); };
+      const auto at = [&](int i, int j) HWY_ATTR {
+        return Channels<Format, D>::load(texel(image, 0, i, j) + part);
+      };
       return at(1, 1)
           .times(spread(taps_.weights[0]))
           .plus(at(2, 1), spread(taps_.weights[1]))
@@ -190,11 +221,13 @@ class HistoryReader {
     });
   }
 
+  template <class Format>
   HWY_INLINE Quad<V> cubic_together(const gpu::HostView& image) const {
     return read_together([&](int part, const auto& spread) HWY_ATTR {
-      const auto at = [&](int i, int j)
-                          HWY_ATTR { return Channels<D>::load(texel(image, 0, i, j) + part); };
-      return sum_of_cubic<Channels<D>>(at, across_, down_, spread);
+      const auto at = [&](int i, int j) HWY_ATTR {
+        return Channels<Format, D>::load(texel(image, 0, i, j) + part);
+      };
+      return sum_of_cubic<Channels<Format, D>>(at, across_, down_, spread);
     });
   }
 
@@ -205,17 +238,21 @@ class HistoryReader {
     return load4(d_, texels);
   }
 
-  HWY_INLINE Texel mean(const gpu::HostView& image, int lane) const {
-    Texel sum = Texel::load(texel(image, lane, 1, 1)).times(bilinear_of_[0][lane]);
-    sum = sum.plus(Texel::load(texel(image, lane, 2, 1)), bilinear_of_[1][lane]);
-    sum = sum.plus(Texel::load(texel(image, lane, 1, 2)), bilinear_of_[2][lane]);
-    return sum.plus(Texel::load(texel(image, lane, 2, 2)), bilinear_of_[3][lane]);
+  template <class Format>
+  HWY_INLINE Texel<Format> mean(const gpu::HostView& image, int lane) const {
+    using T = Texel<Format>;
+    T sum = T::load(texel(image, lane, 1, 1)).times(bilinear_of_[0][lane]);
+    sum = sum.plus(T::load(texel(image, lane, 2, 1)), bilinear_of_[1][lane]);
+    sum = sum.plus(T::load(texel(image, lane, 1, 2)), bilinear_of_[2][lane]);
+    return sum.plus(T::load(texel(image, lane, 2, 2)), bilinear_of_[3][lane]);
   }
 
-  HWY_INLINE Texel cubic(const gpu::HostView& image, int lane) const {
-    const auto at = [&](int i, int j) HWY_ATTR { return Texel::load(texel(image, lane, i, j)); };
+  template <class Format>
+  HWY_INLINE Texel<Format> cubic(const gpu::HostView& image, int lane) const {
+    const auto at = [&](int i, int j)
+                        HWY_ATTR { return Texel<Format>::load(texel(image, lane, i, j)); };
     const auto weight = [lane](const float(&of)[most_lanes]) HWY_ATTR { return of[lane]; };
-    return sum_of_cubic<Texel>(at, across_of_, down_of_, weight);
+    return sum_of_cubic<Texel<Format>>(at, across_of_, down_of_, weight);
   }
 
   /// `at(i, j)` gives the tap in column `i` and row `j`; `weight` makes those of taps.
