@@ -13,7 +13,7 @@ struct SamplingPlanBindings {
   gpu::Read<Stage> visibility_length;  // rgba32f: histories one frame ago
   gpu::Read<Stage> specular_length;    // rgba32f
   gpu::Read<Stage> specular_distance;  // rgba32f, w: distance to what is reflected
-  gpu::Read<Stage> visibility;         // rgba32f, zw: variances one frame ago
+  gpu::Read<Stage> visibility;         // rgba32f: shadow, ambient, variances
   gpu::Write<Stage> planned;           // r32ui
 };
 using SamplingPlanJob = FrameJob<SamplingPlanBindings, shared::SamplingPlanConstants>;
