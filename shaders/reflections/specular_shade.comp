@@ -10,6 +10,7 @@ layout(local_size_x = 64) in;
 #include "lib/rays/ray_index.glsl"
 #include "lib/rays/ray_stream.glsl"
 #include "lib/rays/specular_pixels.glsl"
+#include "shared/sampling.h"
 
 layout(set = 1, binding = 0, rgba8) readonly uniform image2D surface;
 layout(set = 1, binding = 1, rgba32f) readonly uniform image2D motion;
@@ -28,8 +29,6 @@ layout(push_constant) uniform Constants {
   int scale;
   uint reuse_shadows;  // of the frame before
 };
-
-const float shown_depth_tolerance = 0.02;
 
 /// What of a hit's light needs no ray.
 vec3 steady_light(HitSurface s, SurfaceMaterial m) {

@@ -35,6 +35,10 @@ SHARED_CONSTANT float plan_metallic = 0.5f;
 // brightness of the test scenes.
 SHARED_CONSTANT float expected_albedo = 0.3f;
 
+// Hits of reflections that lie so far from what the frame before showed, as a fraction of their view
+// Z, are not the same surface.
+SHARED_CONSTANT float shown_depth_tolerance = 0.02f;
+
 struct SamplingPlanConstants {
   float full_frames;     // shorter histories are sampled in every frame
   uint visibility_most;  // longer ones once in so many frames

@@ -3,6 +3,7 @@
 
 #include "render/kernels/simd/rows.hpp"
 #include "render/kernels/specular.hpp"
+#include "shaders/shared/sampling.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/kernels/specular_shade.cpp"
 #include "hwy/foreach_target.h"
@@ -69,8 +70,6 @@ class HitShading {
   }
 
  private:
-  static constexpr float shown_depth_tolerance = 0.02f;
-
   bool enabled(std::uint32_t flag) const { return (frame_.flags & flag) != 0; }
 
   /// Widths of the camera's ray cones after reflection at the pixels' roughness.
@@ -131,8 +130,8 @@ class HitShading {
         gather(job_.previous_instance.data, texel_index(job_.previous_instance, at, 1));
     const Float shown_z = gathered_last(job_.previous_motion, at);
     shown = hn::And(shown, float_mask(hn::Eq(instance, hn::Add(hit.instance, integer(1)))));
-    shown =
-        hn::And(shown, hn::Le(hn::Abs(shown_z - view_z), view_z * number(shown_depth_tolerance)));
+    shown = hn::And(
+        shown, hn::Le(hn::Abs(shown_z - view_z), view_z * number(shared::shown_depth_tolerance)));
     const Float arrived =
         gather(job_.visibility.template row<const float>(0), texel_index(job_.visibility, at, 4));
     return select(shown, clamped(arrived, 0.0f, 1.0f), unknown);
