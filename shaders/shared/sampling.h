@@ -31,12 +31,12 @@ SHARED_CONSTANT float plan_quiet_factor = 4.0f;
 SHARED_CONSTANT float plan_smooth_roughness = 0.15f;
 SHARED_CONSTANT float plan_metallic = 0.5f;
 
-// Albedo of what occludes reflections of which only the environment is looked up: fitted to the mean
-// brightness of the test scenes.
+// Albedo of what occludes reflections of which only the environment is looked up: fitted to the
+// mean brightness of the test scenes.
 SHARED_CONSTANT float expected_albedo = 0.3f;
 
-// Hits of reflections that lie so far from what the frame before showed, as a fraction of their view
-// Z, are not the same surface.
+// Hits of reflections that lie so far from what the frame before showed, as a fraction of their
+// view Z, are not the same surface.
 SHARED_CONSTANT float shown_depth_tolerance = 0.02f;
 
 struct SamplingPlanConstants {
