@@ -10,6 +10,7 @@ layout(local_size_x = 64) in;
 #include "lib/rays/ray_index.glsl"
 #include "lib/rays/ray_stream.glsl"
 #include "lib/rays/specular_pixels.glsl"
+#include "shared/sampling.h"
 
 layout(set = 1, binding = 0, rgba8) readonly uniform image2D surface;
 layout(set = 1, binding = 1, rgba32f) readonly uniform image2D motion;
@@ -19,12 +20,15 @@ layout(set = 1, binding = 4, std430) readonly buffer Hits { Hit hits[]; };
 layout(set = 1, binding = 5, std430) buffer Count { RayCount ray_count; };
 layout(set = 1, binding = 6, std430) writeonly buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 7, rgba32f) writeonly uniform image2D radiance;
+// One frame ago, or anything.
+layout(set = 1, binding = 8, rgba32f) readonly uniform image2D previous_motion;
+layout(set = 1, binding = 9, r32ui) readonly uniform uimage2D previous_instance;
+layout(set = 1, binding = 10, rgba16) readonly uniform image2D visibility;
 layout(push_constant) uniform Constants {
   uint with_lights;  // 0: only the environment lights what is hit
   int scale;
+  uint reuse_shadows;  // of the frame before
 };
-
-const float distance_of_misses = 1e4;  // metres
 
 /// What of a hit's light needs no ray.
 vec3 steady_light(HitSurface s, SurfaceMaterial m) {
@@ -37,6 +41,24 @@ vec3 steady_light(HitSurface s, SurfaceMaterial m) {
   }
   if (enabled(frame_emissive)) light += s.emissive;
   return light;
+}
+
+/// Fraction of the lights' radiance that the frame before saw arrive at a point, below 0 where it
+/// did not show that.
+float shown_shadows(uint instance, vec3 position, vec3 geometric) {
+  if (reuse_shadows == 0u) return -1.0;
+  vec4 clip = frame.previous_unjittered * vec4(position, 1.0);
+  float view_z = -(frame.previous_view * vec4(position, 1.0)).z;
+  vec3 eye = frame.inverse_view[3].xyz - position;
+  if (enabled(frame_orthographic)) eye = frame.inverse_view[2].xyz;
+  if (view_z <= 0.0 || dot(geometric, eye) <= 0.0) return -1.0;
+  vec2 at = (clip.xy / clip.w * 0.5 + 0.5) * vec2(frame.extent);
+  if (any(lessThan(at, vec2(0.0))) || any(greaterThanEqual(at, vec2(frame.extent)))) return -1.0;
+  ivec2 pixel = ivec2(at);
+  if (imageLoad(previous_instance, pixel).r != instance + 1u) return -1.0;
+  float shown_z = imageLoad(previous_motion, pixel).w;
+  if (abs(shown_z - view_z) > shown_depth_tolerance * view_z) return -1.0;
+  return imageLoad(visibility, pixel).x;
 }
 
 /// One light with its shadow ray, which carries the light that arrives unless it is occluded.
@@ -81,7 +103,12 @@ void main() {
       if (scene_has(scene_blends)) weight *= stopped_weight(s);
       light = steady_light(s, m);
       if (with_lights != 0u && enabled(frame_direct) && (s.flags & material_unlit) == 0u) {
-        shadow = light_shadow_ray(m, s.position, weight, pixel, requested);
+        float shown = shown_shadows(hit.instance, s.position, s.geometric);
+        if (shown >= 0.0) {
+          light += direct_light(m, s.position) * shown;
+        } else {
+          shadow = light_shadow_ray(m, s.position, weight, pixel, requested);
+        }
       }
     }
     imageStore(radiance, pixel / scale, vec4(sanitize(light * weight), travelled));

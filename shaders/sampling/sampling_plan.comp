@@ -4,6 +4,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 // Which pixels trace rays in this frame: those whose history is short do, the others in turn, the
 // longer the history the more rarely.
 #include "lib/frame.glsl"
+#include "lib/math/random.glsl"
 #include "shared/sampling.h"
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D reprojection;
@@ -11,7 +12,7 @@ layout(set = 1, binding = 1, rgba8) readonly uniform image2D surface;
 layout(set = 1, binding = 2, rgba16f) readonly uniform image2D visibility_length;  // one frame ago
 layout(set = 1, binding = 3, rgba16f) readonly uniform image2D specular_length;    // one frame ago
 layout(set = 1, binding = 4, rgba16f) readonly uniform image2D specular_distance;  // w, one frame ago
-layout(set = 1, binding = 5, rgba16) readonly uniform image2D visibility;  // zw, one frame ago
+layout(set = 1, binding = 5, rgba16) readonly uniform image2D visibility;         // one frame ago
 layout(set = 1, binding = 6, r32ui) writeonly uniform uimage2D planned;
 layout(push_constant) uniform Constants { SamplingPlanConstants constants; };
 
@@ -29,6 +30,14 @@ bool is_sampled(float frames, uint most, uint turn) {
   return frames < constants.full_frames || (turn % plan_turns) * most < plan_turns;
 }
 
+/// Whether a reflection that would be sampled traces no ray, because it is rough. Metals show most
+/// of their reflection.
+bool is_faded(vec4 material, ivec2 pixel) {
+  float fraction = clamp((material.x - constants.fade_start) * constants.fade_slope, 0.0, 1.0) *
+                   constants.fade_fraction * (1.0 - material.y);
+  return random_number(uvec2(pixel), frame.sample_index, 7u, frame.seed) < fraction;
+}
+
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel)) return;
@@ -42,7 +51,8 @@ void main() {
     return;
   }
   vec2 frames = imageLoad(visibility_length, before).xy;
-  vec2 noise = imageLoad(visibility, before).zw * frames;
+  vec4 visible = imageLoad(visibility, before);
+  vec2 noise = visible.zw * frames;
   frames *= mix(vec2(1.0), vec2(plan_quiet_factor), lessThan(noise, vec2(plan_quiet_variance)));
   vec4 material = imageLoad(surface, pixel);
   bool mirrors = material.x < plan_smooth_roughness || material.y > plan_metallic;
@@ -51,8 +61,11 @@ void main() {
 
   uint turn = turn_of(uvec2(pixel)) + (frame.sample_index * plan_step >> 29u);
   uint word = floatBitsToUint(abs(imageLoad(specular_distance, before).w)) >> 16u;
+  word |= uint(clamp(visible.y, 0.0, 1.0) * plan_visibility_steps + 0.5) << plan_visibility_shift;
   if (is_sampled(frames.x, constants.visibility_most, turn)) word |= plan_shadows;
   if (is_sampled(frames.y, constants.visibility_most, turn)) word |= plan_ambient;
-  if (is_sampled(reflected, most, turn + plan_turns / 2u)) word |= plan_specular;
+  if (is_sampled(reflected, most, turn + plan_turns / 2u)) {
+    word |= is_faded(material, pixel) ? constants.faded : plan_specular;
+  }
   imageStore(planned, pixel, uvec4(word));
 }

@@ -103,7 +103,11 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   if (from) planned = from->planned;
   NoisySignals noisy{
       trace_shadows(plan, in, gbuffer, planned), trace_ambient(plan, in, gbuffer, planned), {}};
-  if (in.settings.specular.enabled) noisy.specular = trace_specular(plan, in, gbuffer, planned);
+  if (in.settings.specular.enabled) {
+    std::optional<gpu::ImageRef> visibility;
+    if (from) visibility = from->histories.visibility.previous;
+    noisy.specular = trace_specular(plan, in, gbuffer, planned, visibility);
+  }
   std::optional<DenoisedSignals> denoised;
   if (from) denoised = denoise(plan, in, gbuffer, *from, noisy);
 

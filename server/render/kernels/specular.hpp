@@ -31,6 +31,7 @@ struct SpecularRaysConstants {
 struct SpecularRaysJob : FrameJob<SpecularRaysBindings, SpecularRaysConstants> {
   bool layered;  // materials of the scene have layers
   LobeTables tables;
+  const Environment& environment;
   Rows rows;  // of cells, whose rays are made
 };
 void specular_rays(const SpecularRaysJob& job);
@@ -44,10 +45,15 @@ struct SpecularShadeBindings {
   gpu::ReadBuffer<Stage, shared::Hit> hits;
   RaySink<Stage> shadows;      // toward lights
   gpu::Write<Stage> radiance;  // rgba32f
+  // One frame ago, or anything:
+  gpu::Read<Stage> previous_motion;    // rgba32f
+  gpu::Read<Stage> previous_instance;  // r32ui
+  gpu::Read<Stage> visibility;         // rgba16
 };
 struct SpecularShadeConstants {
-  std::uint32_t lights;  // 0: only the environment lights what is hit
-  std::int32_t scale;    // pixels to a texel of `radiance`
+  std::uint32_t lights;         // 0: only the environment lights what is hit
+  std::int32_t scale;           // pixels to a texel of `radiance`
+  std::uint32_t reuse_shadows;  // of the frame before
 };
 struct SpecularShadeJob : FrameJob<SpecularShadeBindings, SpecularShadeConstants> {
   bool layered;  // as above

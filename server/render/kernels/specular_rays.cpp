@@ -1,3 +1,5 @@
+#include <numbers>
+
 #include "render/kernels/common/tile.hpp"
 #include "render/kernels/simd/rows.hpp"
 #include "render/kernels/specular.hpp"
@@ -6,6 +8,7 @@
 #define HWY_TARGET_INCLUDE "render/kernels/specular_rays.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/environment.hpp"
 #include "render/kernels/simd/material/specular_lobe.hpp"
 #include "render/kernels/simd/tiles.hpp"
 
@@ -20,6 +23,7 @@ class Generation {
         frame_(job.frame),
         camera_(job.frame),
         tables_(job.tables),
+        environment_(job.frame, job.environment),
         scale_(job.directions ? 2 : 1),
         random_(specular_pairs(job.frame, 4, scale_)) {}
 
@@ -46,10 +50,16 @@ class Generation {
     const PixelLanes pixel = traced_pixel(cell);
     const Float view_z = gathered_last(job_.motion, pixel);
     const Float4 packed = gathered_unorm8(job_.surface, pixel);
-    const Mask requested = hn::And(inside, hn::Le(packed.z, number(0.5f)));  // not unlit
-    if (none(requested)) return;
+    const Mask lit = hn::And(inside, hn::Le(packed.z, number(0.5f)));  // not unlit
+    if (none(lit)) return;
 
     const auto m = gbuffer_material<layered>(job_, pixel, camera_.to_eye(pixel), tables_);
+    // Roughness is stored in steps of 1 / 255: a little more than half of one is still the same.
+    const Mask smooth =
+        hn::Le(narrower_roughness(m), number(job_.constants.max_roughness + 0.6f / 255.0f));
+    const Mask requested =
+        hn::AndNot(look_up(cell, pixel, m, hn::And(lit, smooth)), hn::And(lit, smooth));
+    if (none(requested)) return;
     Float2 u;
     random_.at(as_unsigned(cell.x), as_unsigned(cell.y), u.x, u.y);
     const SpecularSample s = sample_specular(m, u);
@@ -64,18 +74,67 @@ class Generation {
       put_directions(cell, s, requested);
       ray.user = numbers(1.0f);
     }
-    // Roughness is stored in steps of 1 / 255: a little more than half of one is still the same.
-    const Mask smooth =
-        hn::Le(narrower_roughness(m), number(job_.constants.max_roughness + 0.6f / 255.0f));
     ray.origin = offset_origin(camera_.world_position(pixel, view_z), m.geometric, view_z);
     ray.direction = s.direction;
     ray.t_min = zero();
     ray.t_max = number(1e30f);
     ray.pixel = pack_pixel(pixel);
-    made.add(ray, hn::And(requested, hn::And(smooth, valid)));
+    made.add(ray, hn::And(requested, valid));
   }
 
  private:
+  /// Looks the environment up for those of `candidates` whose words say so. @return which
+  template <class Material>
+  HWY_INLINE Mask look_up(const PixelLanes& cell, const PixelLanes& pixel, const Material& m,
+                          Mask candidates) const {
+    if (job_.constants.by_plan == 0) return hn::FirstN(tag, 0);
+    const Integer word = gather(job_.planned.data, texel_index(job_.planned, pixel, 1));
+    const Integer bit = hn::And(word, integer(static_cast<int>(shared::plan_environment)));
+    const Mask chosen = hn::And(candidates, float_mask(hn::Ne(bit, integer(0))));
+    if (none(chosen)) return chosen;
+    const Float3 seen = expected_reflection(m, ambient_before(word));
+    const Float before = as_float(hn::ShiftLeft<16>(word));
+    const Float away = select(hn::Gt(before, zero()), before, number(distance_of_misses));
+    const Float3 clean = select(is_bad(seen), numbers(0.0f), seen);
+    const Texels<4> texels(Float4{clean.x, clean.y, clean.z, away});
+    const TexelIndices indices(cell);
+    for_each_lane(chosen, [&](std::size_t lane) { texels.put(job_.radiance, lane, indices); });
+    return chosen;
+  }
+
+  HWY_INLINE Float ambient_before(Integer word) const {
+    if (!(frame_.flags & shared::frame_ambient_occlusion)) return one();
+    const Unsigned steps = hn::ShiftRight<shared::plan_visibility_shift>(as_unsigned(word));
+    return to_float(as_integer(steps)) / number(shared::plan_visibility_steps);
+  }
+
+  /// expected_reflection() of shaders/lib/lighting/environment.glsl
+  template <class Material>
+  HWY_INLINE Float3 expected_reflection(const Material& m, Float ambient) const {
+    Float3 open = numbers(0.0f), occluded = numbers(0.0f);
+    if (frame_.flags & shared::frame_environment_specular) {
+      const auto reflection = [&](const Float3& normal, Float roughness) HWY_ATTR {
+        return environment_.reflection(reflect(-m.eye, normal), roughness);
+      };
+      const Float3 light = environment_specular(m, reflection);
+      const Float3& albedo = m.specular_albedo;
+      open = {light.x / at_least(albedo.x, 1e-3f), light.y / at_least(albedo.y, 1e-3f),
+              light.z / at_least(albedo.z, 1e-3f)};
+    }
+    if (frame_.flags & shared::frame_environment_diffuse) {
+      occluded =
+          environment_.irradiance(reflect(m.eye, m.normal)) * number(shared::expected_albedo);
+    }
+    return mix(occluded, open, specular_occlusion(m.n_dot_v, ambient, m.roughness));
+  }
+
+  static HWY_INLINE Float specular_occlusion(Float n_dot_v, Float visibility, Float roughness) {
+    const Float octaves = hn::MulAdd(roughness * roughness, number(-16.0f), number(-1.0f));
+    const Float power = hn::Exp(tag, octaves * number(std::numbers::ln2_v<float>));
+    const Float raised = hn::Exp(tag, hn::Log(tag, n_dot_v + visibility) * power);
+    return clamped(raised - one() + visibility, 0.0f, 1.0f);
+  }
+
   HWY_INLINE Float view_z(const TileRow& cells) const {
     if (scale_ == 1) return row_last(job_.motion, cells);
     return gathered_last(job_.motion, traced_pixel(cells.pixels));
@@ -109,6 +168,7 @@ class Generation {
   const shared::FrameConstants& frame_;
   CameraLanes camera_;
   LobeLanes<Tag> tables_;
+  EnvironmentLanes environment_;
   int scale_;
   RandomPairs<UnsignedTag> random_;
 };

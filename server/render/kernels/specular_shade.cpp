@@ -3,6 +3,7 @@
 
 #include "render/kernels/simd/rows.hpp"
 #include "render/kernels/specular.hpp"
+#include "shaders/shared/sampling.h"
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "render/kernels/specular_shade.cpp"
 #include "hwy/foreach_target.h"
@@ -11,6 +12,7 @@
 #include "render/kernels/simd/lights.hpp"
 #include "render/kernels/simd/material/hit_material.hpp"
 #include "render/kernels/simd/material/specular_lobe.hpp"
+#include "render/kernels/simd/tiles.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
@@ -59,7 +61,8 @@ class HitShading {
       light = select(hit.met, steady_light(s, m), light);
       const Mask lit = hn::AndNot(s.has(shared::material_unlit), hit.met);
       if (job_.constants.lights && enabled(shared::frame_direct) && !none(lit)) {
-        count = make_shadow_rays(ray, weight, s.position, m, cell, lit, shadows);
+        count = add_lights(ray, weight, s.position, m, cell, lit, shown_shadows(hit, s, lit), light,
+                           shadows);
       }
     }
     store(cell, scrubbed(light * weight), travelled, requested);
@@ -67,8 +70,6 @@ class HitShading {
   }
 
  private:
-  static constexpr float distance_of_misses = 1e4f;  // metres
-
   bool enabled(std::uint32_t flag) const { return (frame_.flags & flag) != 0; }
 
   /// Widths of the camera's ray cones after reflection at the pixels' roughness.
@@ -101,25 +102,63 @@ class HitShading {
     return enabled(shared::frame_emissive) ? light + s.emissive : light;
   }
 
-  HWY_INLINE std::size_t make_shadow_rays(const RayLanes& ray, const Float3& weight,
-                                          const Float3& position, const Material& m,
-                                          const PixelLanes& cell, Mask lit,
-                                          shared::Ray* shadows) const {
+  /// Fraction of the lights' radiance that the frame before saw arrive at hits, below 0 where it
+  /// did not show them.
+  HWY_INLINE Float shown_shadows(const HitLanes& hit, const Surface& s, Mask lit) const {
+    const Float unknown = number(-1.0f);
+    if (!job_.constants.reuse_shadows) return unknown;
+    const Float half_w = number(0.5f) / transform_row(frame_.previous_unjittered, 3, s.position);
+    const auto along = [&](int row, std::uint32_t size) HWY_ATTR {
+      const Float clip = transform_row(frame_.previous_unjittered, row, s.position);
+      return hn::MulAdd(clip, half_w, number(0.5f)) * number(static_cast<float>(size));
+    };
+    const Float x = along(0, frame_.extent.x), y = along(1, frame_.extent.y);
+    const Float view_z = hn::Neg(transform_row(frame_.previous_view, 2, s.position));
+    const glm::vec4 axis = frame_.inverse_view[2], eye = frame_.inverse_view[3];
+    const Float3 to_eye = enabled(shared::frame_orthographic)
+                              ? numbers(glm::vec3(axis))
+                              : numbers(glm::vec3(eye)) - s.position;
+    const auto within = [](Float v, std::uint32_t size) HWY_ATTR {
+      return hn::And(hn::Ge(v, zero()), hn::Lt(v, number(static_cast<float>(size))));
+    };
+    Mask shown = hn::And(lit, hn::Gt(hn::Min(view_z, dot(s.geometric, to_eye)), zero()));
+    shown = hn::And(shown, hn::And(within(x, frame_.extent.x), within(y, frame_.extent.y)));
+    if (none(shown)) return unknown;
+    const PixelLanes at{truncated(hn::IfThenElseZero(shown, x)),
+                        truncated(hn::IfThenElseZero(shown, y))};
+    const Integer instance =
+        gather(job_.previous_instance.data, texel_index(job_.previous_instance, at, 1));
+    const Float shown_z = gathered_last(job_.previous_motion, at);
+    shown = hn::And(shown, float_mask(hn::Eq(instance, hn::Add(hit.instance, integer(1)))));
+    shown = hn::And(
+        shown, hn::Le(hn::Abs(shown_z - view_z), view_z * number(shared::shown_depth_tolerance)));
+    const Float arrived = gathered_fraction(job_.visibility, at);
+    return select(shown, arrived, unknown);
+  }
+
+  /// Adds the light of lights to `light` where their shadows are `shown`; elsewhere makes rays that
+  /// carry it. @return how many
+  HWY_INLINE std::size_t add_lights(const RayLanes& ray, const Float3& weight,
+                                    const Float3& position, const Material& m,
+                                    const PixelLanes& cell, Mask lit, Float shown, Float3& light,
+                                    shared::Ray* shadows) const {
     const Unsigned x = as_unsigned(cell.x), y = as_unsigned(cell.y);
     Float pick = picks_.at(x, y);
-    const LightChoice light = choose_light(job_.lights, job_.tables.ltc, m, position, lit, pick);
-    const Mask valid = hn::And(lit, hn::Gt(light.total, zero()));
+    const LightChoice chosen = choose_light(job_.lights, job_.tables.ltc, m, position, lit, pick);
+    const Mask known = hn::Ge(shown, zero());
+    light = light + keep(known, chosen.sum * shown);
+    const Mask valid = hn::AndNot(known, hn::And(lit, hn::Gt(chosen.total, zero())));
     if (none(valid)) return 0;
     Float2 u;
     points_.at(x, y, u.x, u.y);
     RayLanes shadow;
-    const Mask seen = aim(job_.lights, light, m, position, u, pick, valid, shadow);
+    const Mask seen = aim(job_.lights, chosen, m, position, u, pick, valid, shadow);
     shadow.origin = offset_origin(position, m.geometric, zero());
     shadow.t_min = zero();
     // Without shadows every light is visible: an empty interval hits nothing.
     if (!enabled(shared::frame_shadows)) shadow.t_max = zero();
     shadow.pixel = ray.pixel;
-    shadow.user = light.contribution * (light.total / light.weight) * weight;
+    shadow.user = chosen.contribution * (chosen.total / chosen.weight) * weight;
     return store_rays(shadow, seen, shadows);
   }
 

@@ -29,14 +29,6 @@ struct Composition {
   vec3 specular;   // of the specular signal
 };
 
-vec3 direct_light(SurfaceMaterial m, vec3 position) {
-  vec3 sum = vec3(0.0);
-  for (uint i = 0u; i < frame.light_count; ++i) {
-    if (light_reaches(i, position)) sum += light_contribution(light_number(i), m, position);
-  }
-  return sum;
-}
-
 Composition lit_composition(ivec2 pixel, float view_z) {
   SurfaceMaterial m = material_at(pixel);
   Composition terms = Composition(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));

@@ -4,6 +4,7 @@
 #include "lib/lighting/brdf.glsl"
 #include "lib/frame.glsl"
 #include "lib/math/equirectangular.glsl"
+#include "shared/sampling.h"
 
 /// World direction -> direction in the environment's own frame.
 vec3 environment_direction(vec3 world) {
@@ -81,6 +82,26 @@ vec3 environment_specular(SurfaceMaterial m) {
              environment_reflection(reflect(-m.eye, m.coat_normal), m.coat_roughness);
   }
   return light;
+}
+
+/// Specular occlusion from ambient visibility (Lagarde and de Rousiers 2014, section 4.10.2).
+float specular_occlusion(float n_dot_v, float visibility, float roughness) {
+  float power = exp2(-16.0 * roughness * roughness - 1.0);
+  return clamp(pow(n_dot_v + visibility, power) - 1.0 + visibility, 0.0, 1.0);
+}
+
+/// What a specular lobe sees, over its albedo, as far as it is known without a ray: the prefiltered
+/// environment, and surfaces of a medium colour in its diffuse light where that is occluded.
+vec3 expected_reflection(SurfaceMaterial m, float ambient_visibility) {
+  vec3 open = vec3(0.0), occluded = vec3(0.0);
+  if (enabled(frame_environment_specular)) {
+    open = environment_specular(m) / max(m.specular_albedo, vec3(1e-3));
+  }
+  if (enabled(frame_environment_diffuse)) {
+    occluded = expected_albedo * environment_irradiance(reflect(m.eye, m.normal));
+  }
+  float visible = specular_occlusion(m.n_dot_v, ambient_visibility, m.roughness);
+  return mix(occluded, open, visible);
 }
 
 #endif

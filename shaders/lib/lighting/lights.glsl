@@ -148,4 +148,13 @@ vec3 light_contribution(Light light, SurfaceMaterial m, vec3 position) {
   return s.irradiance * shade_light(m, s.direction);
 }
 
+/// Light that a surface sends to the eye from all lights, unshadowed.
+vec3 direct_light(SurfaceMaterial m, vec3 position) {
+  vec3 sum = vec3(0.0);
+  for (uint i = 0u; i < frame.light_count; ++i) {
+    if (light_reaches(i, position)) sum += light_contribution(light_number(i), m, position);
+  }
+  return sum;
+}
+
 #endif

@@ -4,6 +4,7 @@
 #ifndef HELIOGRAPH_SPECULAR_GENERATION_GLSL
 #define HELIOGRAPH_SPECULAR_GENERATION_GLSL
 #include "lib/frame.glsl"
+#include "lib/denoise/moments.glsl"
 #include "lib/rays/ray_stream.glsl"
 #include "lib/math/sampling.glsl"
 #include "lib/rays/sampling_plan.glsl"
@@ -43,6 +44,8 @@ void main() {
 #endif
   uint word = by_plan != 0u ? imageLoad(planned, pixel).r : plan_specular;
   bool left_out = view_z > 0.0 && (word & plan_specular) == 0u;
+  // A negative distance: no sample, and how far it was in the frame before.
+  vec4 seen = vec4(vec3(0.0), left_out ? min(-distance_before(word), -1e-6) : 0.0);
   if (view_z > 0.0 && !left_out && !is_unlit(pixel)) {
     SurfaceMaterial m = material_at(pixel);
     SpecularSample s = sample_specular(m, specular_pair(cell, 4u, scale));
@@ -51,8 +54,14 @@ void main() {
     taken = vec4(s.direction, s.density);
     if (weight != vec3(0.0)) weight = vec3(1.0);
 #endif
-    requested = traces_specular(specular_roughness(m), max_roughness) &&
-                any(greaterThan(weight, vec3(0.0)));
+    requested = traces_specular(specular_roughness(m), max_roughness);
+    if (requested && (word & plan_environment) != 0u) {
+      float away = distance_before(word);
+      seen = vec4(sanitize(expected_reflection(m, ambient_before(word))),
+                  away > 0.0 ? away : distance_of_misses);
+      requested = false;
+    }
+    requested = requested && any(greaterThan(weight, vec3(0.0)));
     ray.origin = offset_origin(world_position(pixel, view_z), m.geometric, view_z);
     ray.t_min = 0.0;
     ray.direction = s.direction;
@@ -62,9 +71,7 @@ void main() {
     ray.padding0 = floatBitsToUint(weight.g);
     ray.padding1 = floatBitsToUint(weight.b);
   }
-  // A negative distance: no sample, and how far it was in the frame before.
-  float away = left_out ? min(-distance_before(word), -1e-6) : 0.0;
-  if (inside) imageStore(radiance, cell, vec4(vec3(0.0), away));
+  if (inside) imageStore(radiance, cell, seen);
 #ifdef HALF_RESOLUTION
   if (inside) imageStore(directions, cell, taken);
 #endif

@@ -4,6 +4,8 @@
 #include "lib/frame.glsl"
 #include "lib/math/random.glsl"
 
+const float distance_of_misses = 1e4;  // metres
+
 /// Roughness is stored in steps of 1 / 255: a little more than half of one is still the same.
 bool traces_specular(float roughness, float max_roughness) {
   return roughness <= max_roughness + 0.6 / 255.0;

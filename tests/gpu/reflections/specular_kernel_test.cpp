@@ -50,7 +50,8 @@ std::shared_ptr<const scene::Scene> lit(const scene::Scene& from) {
 struct View {
   VkExtent2D extent{150, 100};
   protocol::Settings settings;
-  bool with_plan = false;  // a third of the pixels is traced
+  bool with_plan = false;      // a third of the pixels is traced, a third looked up
+  std::optional<float> shown;  // shadow visibility of the frame before, which showed what is hit
 };
 
 scene::Environment sky() {
@@ -67,8 +68,10 @@ class KernelComparison {
              {.extent = view.extent, .environment = sky(), .settings = view.settings}),
         gbuffer_(render::trace_gbuffer(rig_.plan(), with_host_kernels(rig_, true))),
         planned_(view.with_plan ? std::optional(plan(view.extent)) : std::nullopt),
+        visibility_(view.shown ? std::optional(shown(view)) : std::nullopt),
         shader_(trace(false)),
         host_(trace(true)) {
+    if (view.shown) rig_.run();  // the frame before
     rig_.set_view(camera(*scene), 6);
     rig_.run();
   }
@@ -84,6 +87,14 @@ class KernelComparison {
     EXPECT_LT(error.outliers, outliers) << which;
   }
 
+  /// Mean red of the host kernels' reflections.
+  double brightness() const {
+    const render::FloatImage image = rig_.read(host_);
+    double sum = 0.0;
+    for (std::size_t i = 0; i < image.rgba.size(); i += 4) sum += image.rgba[i];
+    return sum / double(image.rgba.size());
+  }
+
  private:
   static scene::Camera camera(const scene::Scene& scene) {
     scene::Camera made = scene::fit_camera(scene.bounds, 25.0f, 1.5f);
@@ -95,17 +106,26 @@ class KernelComparison {
     std::vector<std::uint32_t> words(std::size_t{extent.width} * extent.height);
     for (std::size_t i = 0; i < words.size(); ++i) {
       // 1.5 metres in the frame before
-      words[i] = (i * 7919 % 3 == 0 ? shared::plan_specular : 0u) | 0x3fc0u;
+      const std::uint32_t sampled[] = {shared::plan_specular, 0u,
+                                       shared::plan_specular | shared::plan_environment};
+      words[i] =
+          sampled[i * 7919 % 3] | 0x3fc0u | std::uint32_t(i % 256) << shared::plan_visibility_shift;
     }
     return rig_.input("planned", VK_FORMAT_R32_UINT, words);
   }
+  gpu::ImageRef shown(const View& view) {
+    const std::size_t pixels = std::size_t{view.extent.width} * view.extent.height;
+    return rig_.input("visibility", VK_FORMAT_R16G16B16A16_UNORM,
+                      std::vector(pixels, glm::packUnorm4x16(glm::vec4(*view.shown))));
+  }
   gpu::ImageRef trace(bool host) {
-    return render::trace_specular(rig_.plan(), with_host_kernels(rig_, host), gbuffer_, planned_);
+    return render::trace_specular(rig_.plan(), with_host_kernels(rig_, host), gbuffer_, planned_,
+                                  visibility_);
   }
 
   FrameRig rig_;
   render::GBuffer gbuffer_;
-  std::optional<gpu::ImageRef> planned_;
+  std::optional<gpu::ImageRef> planned_, visibility_;
   gpu::ImageRef shader_, host_;
 };
 
@@ -122,7 +142,10 @@ TEST_F(SpecularKernel, MatchesShaders) {
   KernelComparison(scene, view).expect_equal("all light");
   view.with_plan = true;
   KernelComparison(scene, view).expect_equal("by plan");
+  view.shown = 0.5f;
+  KernelComparison(scene, view).expect_equal("shadows of the frame before");
   view.with_plan = false;
+  view.shown.reset();
   view.settings.specular.half_resolution = true;
   KernelComparison(scene, view).expect_equal("half resolution");
   view.settings.specular.half_resolution = false;
@@ -133,6 +156,19 @@ TEST_F(SpecularKernel, MatchesShaders) {
   view.settings.lighting.environment_specular = false;
   view.settings.specular.max_roughness = 0.3f;
   KernelComparison(scene, view).expect_equal("no shadows, no sky");
+}
+
+TEST_F(SpecularKernel, TakesShadowsFromTheFrameBefore) {
+  const auto scene = lit(*textured_scene());
+  const auto brightness = [&](std::optional<float> shown) {
+    View view;
+    view.shown = shown;
+    return KernelComparison(scene, view).brightness();
+  };
+  const double dark = brightness(0.0f), traced = brightness({}), bright = brightness(1.0f);
+  EXPECT_GT(traced, dark + 0.1 * (bright - dark)) << dark << " " << bright;
+  EXPECT_LT(traced, bright);
+  EXPECT_GT(bright, 1.01 * dark);
 }
 
 TEST_F(SpecularKernel, MatchesShadersForDamagedHelmet) {

@@ -17,7 +17,8 @@ constexpr std::size_t pixels = std::size_t{extent.width} * extent.height;
 struct History {
   float frames = 100.0f;
   float variance = 1.0f;  // of single samples, of visibility
-  float roughness = 0.5f;
+  float roughness = 0.35f;
+  float ambient = 0.5f;
   float metallic = 0.0f;
   bool known = true;
 };
@@ -30,7 +31,8 @@ std::uint32_t packed_surface(const History& history) {
 /// The plan of frames whose histories are given, by the host kernel or the shader.
 class PlannedFrames {
  public:
-  explicit PlannedFrames(bool host = has_host_kernels()) {
+  explicit PlannedFrames(bool host = has_host_kernels(), const protocol::Settings& settings = {})
+      : rig_(SceneBuilder().build(), camera_, {.extent = extent, .settings = settings}) {
     render::GBuffer gbuffer{};
     gbuffer.surface = surface_;
     const render::PreviousSamples previous{visibility_length_, specular_length_, specular_distance_,
@@ -55,7 +57,7 @@ class PlannedFrames {
       lengths[i] = glm::packHalf4x16(glm::vec4(history.frames));
       distance[i] = glm::packHalf4x16(glm::vec4(0.0f, 0.0f, 0.0f, 1.5f));
       const float of_mean = history.variance / history.frames;
-      noise[i] = glm::packUnorm4x16(glm::vec4(0.5f, 0.5f, of_mean, of_mean));
+      noise[i] = glm::packUnorm4x16(glm::vec4(0.5f, history.ambient, of_mean, of_mean));
       surface[i] = packed_surface(history);
     }
     rig_.fill(reprojection_, reprojection);
@@ -99,7 +101,7 @@ class PlannedFrames {
   }
 
   const scene::Camera camera_ = look({0, 0, 3}, {0, 0, 0});
-  FrameRig rig_{SceneBuilder().build(), camera_, {.extent = extent}};
+  FrameRig rig_;
   gpu::ImageRef reprojection_ = rig_.input("reprojection", VK_FORMAT_R32G32B32A32_SFLOAT,
                                            std::vector(pixels, glm::vec4(0.0f)));
   gpu::ImageRef visibility_length_ = halves("lengths"),
@@ -113,8 +115,9 @@ class PlannedFrames {
   bool started_ = false;
 };
 
-void expect_rates(const History& history, const glm::dvec3& expected, const char* what) {
-  PlannedFrames frames;
+void expect_rates(const History& history, const glm::dvec3& expected, const char* what,
+                  const protocol::Settings& settings = {}) {
+  PlannedFrames frames(has_host_kernels(), settings);
   frames.set(history);
   const glm::dvec3 rates = frames.rates();
   EXPECT_NEAR(rates.x, expected.x, 0.01) << what;
@@ -124,14 +127,20 @@ void expect_rates(const History& history, const glm::dvec3& expected, const char
 
 TEST(SamplingPlan, KernelMatchesShader) {
   if (!has_host_kernels()) GTEST_SKIP() << "host kernels run on CPU devices only";
-  PlannedFrames host(true), shader(false);
+  protocol::Settings settings;
+  settings.specular.fade_to = protocol::FadedReflection::environment;
+  PlannedFrames host(true, settings), shader(false, settings);
   std::mt19937 random(3);
   std::uniform_real_distribution<float> unit(0.0f, 1.0f);
   for (std::uint32_t frame = 1; frame <= 8; ++frame) {
     std::vector<History> histories(pixels);
     for (History& history : histories) {
-      history = {std::floor(1.0f + 40.0f * unit(random)), 0.2f * unit(random), unit(random),
-                 unit(random), unit(random) > 0.1f};
+      history = {std::floor(1.0f + 40.0f * unit(random)),
+                 0.2f * unit(random),
+                 unit(random),
+                 unit(random),
+                 unit(random),
+                 unit(random) > 0.1f};
     }
     const auto history_of = [&](std::size_t i) { return histories[i]; };
     host.set(history_of);
@@ -165,6 +174,44 @@ TEST(SamplingPlan, NeedsFewerSamplesWhereTheyHardlyDiffer) {
                {0.125, 0.125, 0.125}, "quiet");
   expect_rates({.frames = quarter, .variance = 2.0f * shared::plan_quiet_variance}, {1, 1, 0.125},
                "noisy");
+}
+
+TEST(SamplingPlan, FadesReflectionsOfRoughSurfaces) {
+  protocol::Settings settings;
+  settings.specular.fade_start = 0.4f;
+  settings.specular.fade_end = 0.6f;
+  settings.specular.fade_fraction = 0.8f;
+  const auto rate = [&](float roughness) {
+    PlannedFrames frames(has_host_kernels(), settings);
+    frames.set(History{.roughness = roughness});
+    return frames.rates().z * settings.sampling.floor;
+  };
+  EXPECT_NEAR(rate(0.4f), 1.0, 0.03);
+  EXPECT_NEAR(rate(0.5f), 0.6, 0.05) << "half faded";
+  EXPECT_NEAR(rate(0.6f), 0.2, 0.05);
+  EXPECT_NEAR(rate(1.0f), 0.2, 0.05);
+  expect_rates({.roughness = 1.0f, .metallic = 1.0f}, {0.125, 0.125, 0.5}, "metal", settings);
+  expect_rates({.roughness = 1.0f, .known = false}, {1, 1, 1}, "disoccluded", settings);
+  settings.specular.fade_fraction = 0.0f;
+  expect_rates({.roughness = 1.0f}, {0.125, 0.125, 0.125}, "none fades", settings);
+}
+
+TEST(SamplingPlan, LooksUpTheEnvironmentWhereReflectionsFade) {
+  protocol::Settings settings;
+  settings.specular.fade_to = protocol::FadedReflection::environment;
+  settings.specular.fade_fraction = 1.0f;
+  PlannedFrames frames(has_host_kernels(), settings);
+  frames.set(History{.roughness = 1.0f, .ambient = 0.25f});
+  int looked_up = 0;
+  for (std::uint32_t frame = 1; frame <= 16; ++frame) {
+    for (const std::uint32_t word : frames.run(frame)) {
+      const bool sampled = (word & shared::plan_specular) != 0;
+      EXPECT_EQ((word & shared::plan_environment) != 0, sampled);
+      EXPECT_EQ(word >> shared::plan_visibility_shift, 64u) << "a quarter of 255";
+      looked_up += sampled;
+    }
+  }
+  EXPECT_NEAR(looked_up / (16.0 * pixels), 0.125, 0.03);
 }
 
 // Three gaps of a golden rotation over eight turns.

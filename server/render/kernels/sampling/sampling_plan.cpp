@@ -7,6 +7,7 @@
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/simd/history.hpp"
+#include "render/kernels/simd/random.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
@@ -16,6 +17,7 @@ class Planning {
   using V = hn::Vec<D>;
   using M = hn::Mask<D>;
   using DI = hn::RebindToSigned<D>;
+  using DU = hn::RebindToUnsigned<D>;
   using VI = hn::Vec<DI>;
   using MI = hn::Mask<DI>;
 
@@ -23,7 +25,8 @@ class Planning {
   HWY_INLINE explicit Planning(const SamplingPlanJob& job)
       : job_(job),
         bounds_(job.width, job.height),
-        turn_(static_cast<int>(job.frame.sample_index * shared::plan_step >> 29u)) {}
+        turn_(static_cast<int>(job.frame.sample_index * shared::plan_step >> 29u)),
+        fades_({}, job.frame.sample_index, 7, job.frame.seed) {}
 
   HWY_INLINE void rows(int first, int last) const {
     const int lanes = static_cast<int>(hn::Lanes(d_));
@@ -58,6 +61,19 @@ class Planning {
     return hn::IfThenElse(quiet, frames * set(shared::plan_quiet_factor), frames);
   }
 
+  /// is_faded() of the shader.
+  HWY_INLINE MI is_faded(V roughness, V metallic, int x, int y) const {
+    const auto& c = job_.constants;
+    const V one = set(1.0f);
+    const V rough = clamped((roughness - set(c.fade_start)) * set(c.fade_slope), 0.0f, 1.0f);
+    const V fraction = rough * set(c.fade_fraction) * (one - metallic);
+    if (hn::AllTrue(d_, hn::Le(fraction, hn::Zero(d_)))) return hn::FirstN(di_, 0);
+    const DU du;
+    const V number = fades_.at(hn::Iota(du, static_cast<shared::uint>(x)),
+                               hn::Set(du, static_cast<shared::uint>(y)));
+    return hn::RebindMask(di_, hn::Lt(number, fraction));
+  }
+
   HWY_INLINE void block(int x, int y) const {
     const auto& c = job_.constants;
     const Quad<V> map = load4(d_, row_of<const float>(job_.reprojection, y) + 4 * x);
@@ -79,8 +95,9 @@ class Planning {
     const V away = hn::Abs(texels.template half_of_four_halves<1>(job_.specular_distance).y);
     const auto packed =
         hn::LoadU(hn::RebindToUnsigned<D>(), row_of<const std::uint32_t>(job_.surface, y) + x);
-    const M mirrors = hn::Or(hn::Lt(unorm8<0>(d_, packed), set(shared::plan_smooth_roughness)),
-                             hn::Gt(unorm8<8>(d_, packed), set(shared::plan_metallic)));
+    const V roughness = unorm8<0>(d_, packed), metallic = unorm8<8>(d_, packed);
+    const M mirrors = hn::Or(hn::Lt(roughness, set(shared::plan_smooth_roughness)),
+                             hn::Gt(metallic, set(shared::plan_metallic)));
     const auto most = [&](shared::uint count) HWY_ATTR { return whole(static_cast<int>(count)); };
     const VI now = turn(x, y, 0);
     const MI lit = is_sampled(counted(frames.x, noise.x), most(c.visibility_most), now);
@@ -90,9 +107,16 @@ class Planning {
         hn::IfThenElse(hn::RebindMask(di_, mirrors), most(c.mirrors_most), most(c.specular_most)),
         turn(x, y, shared::plan_turns / 2));
     VI word = hn::ShiftRight<16>(hn::BitCast(di_, away));
+    const V ambient = texels.template half_of_four_fractions<0>(job_.visibility).y;
+    const V steps = ambient * set(shared::plan_visibility_steps);
+    word = hn::Or(word, hn::ShiftLeft<static_cast<int>(shared::plan_visibility_shift)>(
+                            hn::ConvertTo(di_, steps + half)));
     word = hn::Or(word, hn::IfThenElseZero(lit, whole(shared::plan_shadows)));
     word = hn::Or(word, hn::IfThenElseZero(open, whole(shared::plan_ambient)));
-    word = hn::Or(word, hn::IfThenElseZero(mirrored, whole(shared::plan_specular)));
+    const VI reflection =
+        hn::IfThenElse(is_faded(roughness, metallic, x, y), whole(static_cast<int>(c.faded)),
+                       whole(shared::plan_specular));
+    word = hn::Or(word, hn::IfThenElseZero(mirrored, reflection));
     word = hn::IfThenElse(known, word, whole(shared::plan_all));
     hn::StoreU(word, di_, row_of<int>(job_.planned, y) + x);
   }
@@ -102,6 +126,7 @@ class Planning {
   const SamplingPlanJob& job_;
   Bounds<D> bounds_;
   int turn_;
+  RandomNumbers<DU> fades_;
 };
 
 void plan_rows(const SamplingPlanJob& job, int first, int last) {

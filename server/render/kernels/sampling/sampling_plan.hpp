@@ -13,7 +13,7 @@ struct SamplingPlanBindings {
   gpu::Read<Stage> visibility_length;  // rgba16f: histories one frame ago
   gpu::Read<Stage> specular_length;    // rgba16f
   gpu::Read<Stage> specular_distance;  // rgba16f, w: distance to what is reflected
-  gpu::Read<Stage> visibility;         // rgba16, zw: variances one frame ago
+  gpu::Read<Stage> visibility;         // rgba16: shadow, ambient, variances
   gpu::Write<Stage> planned;           // r32ui
 };
 using SamplingPlanJob = FrameJob<SamplingPlanBindings, shared::SamplingPlanConstants>;

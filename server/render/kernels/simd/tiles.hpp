@@ -33,6 +33,12 @@ HWY_INLINE Float4 gathered4(const gpu::HostView& image, const PixelLanes& p) {
 HWY_INLINE Float gathered_last(const gpu::HostView& image, const PixelLanes& p) {
   return gather(image.row<const float>(0), hn::Add(texel_index(image, p, 4), integer(3)));
 }
+/// The first of four channels of 16 bits, 0 to 1.
+HWY_INLINE Float gathered_fraction(const gpu::HostView& image, const PixelLanes& p) {
+  const Integer words = gather(image.data, texel_index(image, p, 2));
+  const Integer first = hn::And(words, integer(0xffff));
+  return hn::ConvertTo(tag, first) * number(1.0f / 65535.0f);
+}
 
 /// shaders/lib/scene/gbuffer_material.glsl, of the images that a pass reads.
 template <bool layered, class Job>

@@ -125,8 +125,8 @@ class BlendedSurfaces {
     add_unoccluded_light(plan_, in_, "blended.shadows", shadows, to_.radiance);
     add_unoccluded_light(plan_, in_, "blended.ambient", ambient, to_.radiance);
     if (traced) {
-      trace_reflections(plan_, in_, "blended.specular", reflected, to_.surface, to_.transmittance,
-                        to_.specular);
+      trace_reflections(plan_, in_, "blended.specular", reflected, gbuffer_, to_.surface,
+                        to_.transmittance, to_.specular);
     }
   }
 

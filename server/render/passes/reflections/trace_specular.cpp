@@ -58,18 +58,21 @@ tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
       })
       .dispatch(target.size)
       .host([in, rows](const kernels::SpecularRaysJob::Pass& pass) {
-        kernels::specular_rays(
-            {pass, in.constants, kernels::has_layers(in.scene.features), in.lobe_tables(), rows});
+        const bool separate_sun = in.settings.environment.separate_sun;
+        kernels::specular_rays({pass, in.constants, kernels::has_layers(in.scene.features),
+                                in.lobe_tables(),
+                                *in.moving.environment().view(separate_sun).maps.host, rows});
       });
   return in.settings.specular.sort_rays ? sort_rays(plan, in, "specular", rays) : rays;
 }
 
-/// What the rays hit, and the shadow rays from there.
+/// What the rays hit, the shadow rays from there, and where others are known from.
 struct Hits {
   std::string name;
   tracing::RayStream rays;
   gpu::BufferRef hits;
   tracing::RayStream shadows;
+  std::optional<gpu::ImageRef> visibility;  // one frame ago
 };
 
 /// Shades the hits; makes the shadow rays toward their lights.
@@ -77,16 +80,25 @@ void shade(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer, 
            const Target& target) {
   const std::uint32_t features = in.scene.features;
   begin_rays(plan, in, hits.name + ".shadows", hits.shadows);
+  const gpu::ImageRef nothing_shown =
+      plan.image(hits.name + ".nothing_shown", formats::four_fractions, 0, {1, 1});
   plan.pass(hits.name + ".shade", in.program(shaders::specular_shade, features))
-      .bind<kernels::SpecularShadeBindings>({.surface = gbuffer.surface,
-                                             .motion = gbuffer.motion,
-                                             .rays = ray_source(hits.rays),
-                                             .hits = hits.hits,
-                                             .shadows = ray_sink(hits.shadows),
-                                             .radiance = target.radiance})
-      .constants([&s = in.settings.specular, scale = target.scale] {
-        return kernels::SpecularShadeConstants{s.hit_shading == protocol::HitShading::traced,
-                                               scale};
+      .bind<kernels::SpecularShadeBindings>(
+          {.surface = gbuffer.surface,
+           .motion = gbuffer.motion,
+           .rays = ray_source(hits.rays),
+           .hits = hits.hits,
+           .shadows = ray_sink(hits.shadows),
+           .radiance = target.radiance,
+           .previous_motion = gbuffer.previous_motion,
+           .previous_instance = gbuffer.previous_instance,
+           .visibility = hits.visibility.value_or(nothing_shown)})
+      .constants([in, scale = target.scale, known = hits.visibility.has_value()] {
+        const auto& s = in.settings.specular;
+        return kernels::SpecularShadeConstants{
+            s.hit_shading == protocol::HitShading::traced, scale,
+            known && s.reuse_shadows && leaves_visibility_out(in) &&
+                (in.constants.flags & shared::frame_shadows) != 0};
       })
       .dispatch_indirect(hits.rays.count, ray_groups_offset)
       .host([in](const kernels::SpecularShadeJob::Pass& pass) {
@@ -114,13 +126,14 @@ void resolve_lights(gpu::FramePlan& plan, const FrameInputs& in, const std::stri
 }
 
 void trace_and_shade(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
-                     const tracing::RayStream& rays, const GBuffer& gbuffer, const Target& target) {
+                     const tracing::RayStream& rays, const GBuffer& gbuffer, const Target& target,
+                     std::optional<gpu::ImageRef> visibility = {}) {
   const auto hits = plan.buffer(name + ".hits", sizeof(shared::Hit) * rays.capacity, storage,
                                 gpu::Memory::device);
   in.tracer.trace_closest(plan, name + ".trace", in.structure, rays, hits);
   const auto shadows =
       declare_rays(plan, name + ".shadows", rays.capacity, tracing::RayKind::hit_shadow);
-  shade(plan, in, gbuffer, {name, rays, hits, shadows}, target);
+  shade(plan, in, gbuffer, {name, rays, hits, shadows, visibility}, target);
   resolve_lights(plan, in, name, shadows, target);
 }
 
@@ -144,20 +157,21 @@ gpu::ImageRef upsample(gpu::FramePlan& plan, const FrameInputs& in, const GBuffe
 }  // namespace
 
 gpu::ImageRef trace_specular(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                             std::optional<gpu::ImageRef> planned) {
+                             std::optional<gpu::ImageRef> planned,
+                             std::optional<gpu::ImageRef> visibility) {
   const Target target = make_target(plan, in.settings.specular.half_resolution);
   if (target.directions) planned.reset();
   for (const kernels::Rows rows : ray_strips(plan, target.size.of(plan.extent()))) {
     const auto rays = generate_rays(plan, in, gbuffer, target, rows, planned);
-    trace_and_shade(plan, in, "specular", rays, gbuffer, target);
+    trace_and_shade(plan, in, "specular", rays, gbuffer, target, visibility);
   }
   return target.directions ? upsample(plan, in, gbuffer, target) : target.radiance;
 }
 
 void trace_reflections(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
-                       const tracing::RayStream& rays, gpu::ImageRef surface,
+                       const tracing::RayStream& rays, const GBuffer& behind, gpu::ImageRef surface,
                        gpu::ImageRef distance, gpu::ImageRef radiance) {
-  GBuffer reflecting;
+  GBuffer reflecting = behind;
   reflecting.surface = surface;
   reflecting.motion = distance;
   trace_and_shade(plan, in, name, rays, reflecting, {radiance, {}, gpu::each_pixel(), 1});

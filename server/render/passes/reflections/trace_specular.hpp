@@ -31,14 +31,17 @@ inline constexpr struct SpecularBuffers {
 /// rougher than `specular.max_roughness`: radiance x BRDF x cos / pdf, divided by the surface's
 /// specular albedo (rgb), and how far the ray went (w, metres; 10 km where it met nothing, 0 where
 /// there was none). Where a sampling plan is `planned` and leaves a pixel out, w is the distance of
-/// the frame before, negated.
+/// the frame before, negated. `visibility` of the frame before, shadow in x, takes the place of
+/// shadow rays from hits that it showed.
 gpu::ImageRef trace_specular(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                             std::optional<gpu::ImageRef> planned = {});
+                             std::optional<gpu::ImageRef> planned = {},
+                             std::optional<gpu::ImageRef> visibility = {});
 
-/// Radiance along `rays`, each with its weight: stored in `radiance` at the rays' pixels. `surface`
-/// holds the roughness that they come from, `distance` how far from the eye that is (a; metres).
+/// Radiance along `rays` of surfaces before those of the G-buffer `behind`, each with its weight:
+/// stored in `radiance` at the rays' pixels. `surface` holds the roughness that they come from,
+/// `distance` how far from the eye that is (a; metres).
 void trace_reflections(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
-                       const tracing::RayStream& rays, gpu::ImageRef surface,
+                       const tracing::RayStream& rays, const GBuffer& behind, gpu::ImageRef surface,
                        gpu::ImageRef distance, gpu::ImageRef radiance);
 
 /// Adds what `rays` carry to `radiance`, at the pixels of those that are not occluded.

@@ -32,8 +32,18 @@ shared::SamplingPlanConstants plan_constants(const FrameInputs& in) {
       in.scene_motion.settled() ? static_cast<std::uint32_t>(s.sampling.floor) : 1u;
   const std::uint32_t mirrors = std::min(most, 2u);
   const auto at_most = [](std::uint32_t frames, bool planned) { return planned ? frames : 1u; };
-  return {static_cast<float>(s.sampling.full_frames), at_most(most, plans_visibility(s)),
-          at_most(most, plans_specular(s)), at_most(mirrors, plans_specular(s))};
+  const bool fades = plans_specular(s) && in.scene_motion.settled();
+  const bool looks_up = s.specular.fade_to == protocol::FadedReflection::environment;
+  // Roughness is stored in steps of 1 / 255.
+  const float fade_range = std::max(s.specular.fade_end - s.specular.fade_start, 1.0f / 255.0f);
+  return {static_cast<float>(s.sampling.full_frames),
+          at_most(most, plans_visibility(s)),
+          at_most(most, plans_specular(s)),
+          at_most(mirrors, plans_specular(s)),
+          s.specular.fade_start,
+          1.0f / fade_range,
+          fades ? s.specular.fade_fraction : 0.0f,
+          looks_up ? shared::plan_specular | shared::plan_environment : 0u};
 }
 
 /// Whether frames of a moving view do.
@@ -48,6 +58,10 @@ bool may_leave_samples_out(const Settings& settings) {
 bool leaves_samples_out(const FrameInputs& in) {
   return in.clock.samples == 0 && in.constants.history_invalid == 0 &&
          may_leave_samples_out(in.settings);
+}
+
+bool leaves_visibility_out(const FrameInputs& in) {
+  return leaves_samples_out(in) && plans_visibility(in.settings) && in.scene_motion.settled();
 }
 
 gpu::ImageRef plan_samples(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,

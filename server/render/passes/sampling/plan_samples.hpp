@@ -35,12 +35,15 @@ struct PreviousSamples {
   gpu::ImageRef visibility_length;
   gpu::ImageRef specular_length;
   gpu::ImageRef specular_distance;  // in w
-  gpu::ImageRef visibility;         // variances in zw
+  gpu::ImageRef visibility;         // shadow and ambient; variances in zw
 };
 
 /// Whether this frame of a moving view leaves samples out. It is no part of the accumulated mean,
 /// which a static view converges to: that holds a sample of every pixel in every frame.
 bool leaves_samples_out(const FrameInputs& in);
+
+/// Whether it leaves out shadow and ambient rays because nothing changes under their histories.
+bool leaves_visibility_out(const FrameInputs& in);
 
 /// Decides for every pixel which rays it traces, in words as in shaders/shared/sampling.h, in
 /// frames that leave samples out. Surfaces with a short history are sampled in every frame, others

@@ -19,6 +19,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
+inline constexpr float distance_of_misses = 1e4f;  // metres
+
 using MaterialLanes = SurfaceMaterial<Float>;
 
 /// Where traced pixels stand in a sequence of random numbers.
