@@ -32,6 +32,7 @@ protocol::Settings without_noise() {
   settings.specular.enabled = false;
   settings.ambient.occlusion = false;
   settings.accumulation.max_samples = 4096;
+  settings.accumulation.by_noise = false;
   settings.accumulation.blend_samples = 4096;  // shows the antialiased frame
   return settings;
 }
