@@ -102,7 +102,7 @@ SHARED_CONSTANT uint atrous_jitter = 4u;
 SHARED_CONSTANT uint atrous_levels_by_roughness = 8u;
 SHARED_CONSTANT uint atrous_lobe_limit = 16u;
 
-// A kernel of (2 columns + 1) x (2 rows + 1) taps, 2^level pixels apart.
+// A kernel of (2 columns + 1) x (2 rows + 1) taps, 2^level texels apart.
 struct AtrousConstants {
   int level;
   int columns;
@@ -112,7 +112,13 @@ struct AtrousConstants {
   float depth_sigma;
   float start_threshold;  // rougher pixels take twice the distance; -1: all, 2: none
   uint flags;             // atrous_*
+  int pixels_per_texel;   // of the images, along each axis: 2 where they have half of the size
 };
+
+// visibility_upsample: what a pixel's own value weighs against the four texels of half size about
+// it; about what the first iteration at full size leaves it.
+// VisibilityUpsample.KeepsWhatIsKnownAtFullSize.
+SHARED_CONSTANT float upsample_own_weight = 0.15f;
 
 SHARED_END
 #endif

@@ -7,7 +7,9 @@
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <nlohmann/json.hpp>
+#include <regex>
 
+#include "gpu/frame_plan/frame_size.hpp"
 #include "protocol/settings/presets.hpp"
 #include "protocol/settings/settings.hpp"
 #include "protocol/settings/settings_json.hpp"
@@ -136,16 +138,16 @@ struct Run {
   Table table;
 };
 
-/// The bare loop for an iteration of the blur in two halves, such as "visibility.atrous.3".
+/// The bare loop for an iteration of the blur in two halves, such as "visibility.atrous.3", or
+/// "visibility.half.atrous.1" of images of half the size.
 std::optional<double> bare_loop_milliseconds(const std::string& pass, VkExtent2D extent) {
-  char signal[16];
-  int level = 0, end = 0;
-  if (std::sscanf(pass.c_str(), "%15[a-z].atrous.%d%n", signal, &level, &end) != 2 ||
-      end != static_cast<int>(pass.size())) {
-    return std::nullopt;
-  }
-  return 2.0 * atrous_milliseconds(std::string(signal) == "visibility", extent.width, extent.height,
-                                   1 << level);
+  static const std::regex iteration(R"((visibility|specular)(\.half)?\.atrous\.(\d))");
+  std::smatch parts;
+  if (!std::regex_match(pass, parts, iteration)) return std::nullopt;
+  const gpu::FrameSize size = gpu::FrameSize::squares(parts[2].matched ? 2 : 1);
+  const VkExtent2D texels = size.of(extent);
+  return 2.0 * atrous_milliseconds(parts[1] == "visibility", texels.width, texels.height,
+                                   1 << std::stoi(parts[3]));
 }
 
 /// Adds reference times per pass: Embree alone, in its fastest configuration, on the rays of the

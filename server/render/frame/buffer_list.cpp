@@ -47,9 +47,10 @@ const std::vector<BufferDescription>& all_buffers() {
   static const std::vector<BufferDescription> buffers = joined(
       present_buffers, gbuffer_buffers, reproject_buffers, sampling_plan_buffers,
       visibility_buffers, specular_buffers, denoise_visibility_buffers, visibility_temporal_buffers,
-      visibility_atrous_buffers, denoise_specular_buffers, specular_temporal_buffers,
-      specular_atrous_buffers, skybox_buffers, compose_buffers, blended_buffers, reference_buffers,
-      accumulate_buffers, temporal_antialias_buffers, mean_weight_buffers);
+      half_visibility_buffers, visibility_half_atrous_buffers, visibility_atrous_buffers,
+      denoise_specular_buffers, specular_temporal_buffers, specular_atrous_buffers, skybox_buffers,
+      compose_buffers, blended_buffers, reference_buffers, accumulate_buffers,
+      temporal_antialias_buffers, mean_weight_buffers);
   return buffers;
 }
 

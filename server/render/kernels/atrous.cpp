@@ -21,7 +21,8 @@ HWY_INLINE AtrousPass make_pass(const Job& job, const shared::AtrousConstants& c
           frame,
           job.depth_slope,
           job.height,
-          2.0f * std::abs(frame.unproject.y) / static_cast<float>(frame.extent.y),
+          2.0f * std::abs(frame.unproject.y) / static_cast<float>(frame.extent.y) *
+              static_cast<float>(constants.pixels_per_texel),
           (frame.flags & shared::frame_orthographic) != 0,
           atrous_steps(constants)};
 }
@@ -174,41 +175,62 @@ constexpr int parts(int size, int part) {
 }
 
 /// What is filtered first must exist beside an area, too, in the direction of the second half: few
-/// areas in that direction waste least, and enough for all processors.
+/// areas in that direction waste least. At least one for each processor.
 Areas divided(const AtrousHalvesJob& job) {
-  if (job.constants.first.columns > 0) return {parts(job.width, 128), parts(job.height, 180)};
-  return {1, parts(job.height, 45)};
+  const bool across_first = job.constants.first.columns > 0;
+  Areas areas = across_first ? Areas{parts(job.width, 128), parts(job.height, 180)}
+                             : Areas{1, parts(job.height, 45)};
+  int& number = across_first ? areas.rows : areas.columns;
+  constexpr int least_side = 32;
+  const int most = (across_first ? job.height : job.width) / least_side;
+  while (areas.count() < processors() && 2 * number <= most) number *= 2;
+  return areas;
 }
 Areas divided(const AtrousJob& job) {
   constexpr int band = 64;
   return {1, parts(job.height, band)};
 }
 
+int pixels_per_texel(const AtrousJob& job) {
+  return job.constants.pixels_per_texel;
+}
+int pixels_per_texel(const AtrousHalvesJob& job) {
+  return job.constants.first.pixels_per_texel;
+}
+
+/// Calls `filter(job, area)` with a job of the images' size.
 template <class Job, class Filter>
-void for_each_area(const Job& job, const Filter& filter) {
+void for_each_area(Job job, const Filter& filter) {
+  const int side = pixels_per_texel(job);
+  job.width = (job.width + side - 1) / side;
+  job.height = (job.height + side - 1) / side;
   const Areas areas = divided(job);
   for_each_range(areas.count(), 1,
-                 [&](int first, int) { filter(areas.at(first, job.width, job.height)); });
+                 [&](int first, int) { filter(job, areas.at(first, job.width, job.height)); });
 }
 
 }  // namespace
 
-void visibility_atrous(const AtrousJob& job) {
-  for_each_area(job, [&](const Area& area) { HWY_DYNAMIC_DISPATCH(filter_visibility)(job, area); });
+void visibility_atrous(const AtrousJob& whole) {
+  for_each_area(whole, [](const AtrousJob& job, const Area& area) {
+    HWY_DYNAMIC_DISPATCH(filter_visibility)(job, area);
+  });
 }
 
-void specular_atrous(const AtrousJob& job) {
-  for_each_area(job, [&](const Area& area) { HWY_DYNAMIC_DISPATCH(filter_specular)(job, area); });
+void specular_atrous(const AtrousJob& whole) {
+  for_each_area(whole, [](const AtrousJob& job, const Area& area) {
+    HWY_DYNAMIC_DISPATCH(filter_specular)(job, area);
+  });
 }
 
-void visibility_atrous_halves(const AtrousHalvesJob& job) {
-  for_each_area(job, [&](const Area& area) {
+void visibility_atrous_halves(const AtrousHalvesJob& whole) {
+  for_each_area(whole, [](const AtrousHalvesJob& job, const Area& area) {
     HWY_DYNAMIC_DISPATCH(filter_visibility_halves)(job, area);
   });
 }
 
-void specular_atrous_halves(const AtrousHalvesJob& job) {
-  for_each_area(job, [&](const Area& area) {
+void specular_atrous_halves(const AtrousHalvesJob& whole) {
+  for_each_area(whole, [](const AtrousHalvesJob& job, const Area& area) {
     HWY_DYNAMIC_DISPATCH(filter_specular_halves)(job, area);
   });
 }

@@ -5,7 +5,8 @@
 
 namespace heliograph::render::kernels {
 
-/// One iteration of the a-trous filter: shaders/lib/denoise/atrous.glsl.
+/// One iteration of the a-trous filter: shaders/lib/denoise/atrous.glsl. All images have the size
+/// that AtrousConstants::pixels_per_texel tells.
 template <class Stage>
 struct AtrousBindings {
   gpu::Read<Stage> guide;        // rgba32f

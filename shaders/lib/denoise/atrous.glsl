@@ -13,6 +13,7 @@ layout(set = 1, binding = 1, rg32f) readonly uniform image2D depth_slope;
 layout(set = 1, binding = 2, rgba32f) readonly uniform image2D signal;
 layout(set = 1, binding = 3, rgba32f) writeonly uniform image2D filtered;
 layout(push_constant) uniform Constants { AtrousConstants constants; };
+#include "lib/denoise/smooth_variance.glsl"
 
 /// Of the B3 spline (1, 4, 6, 4, 1) / 16 against its middle: logarithms of 1, 2/3 and 1/6.
 const float kernel_exponent[3] = float[3](0.0, -0.40546511, -1.79175947);
@@ -31,18 +32,9 @@ struct Center {
   vec2 noise;  // standard deviation
 };
 
-/// Variance over 3x3 pixels with weights 1 2 1: one pixel's own estimate is too noisy to guide.
-vec2 smooth_variance(ivec2 pixel) {
-  ivec2 last = ivec2(frame.extent) - 1;
-  vec2 sum = vec2(0.0);
-  for (int y = -1; y <= 1; ++y) {
-    for (int x = -1; x <= 1; ++x) {
-      float weight = float((2 - abs(x)) * (2 - abs(y))) / 16.0;
-      ivec2 tap = clamp(pixel + ivec2(x, y), ivec2(0), last);
-      sum += weight * variance_of(imageLoad(signal, tap));
-    }
-  }
-  return sum;
+/// Of the images, which may be smaller than the frame.
+ivec2 image_extent() {
+  return (ivec2(frame.extent) + constants.pixels_per_texel - 1) / constants.pixels_per_texel;
 }
 
 /// How often a pixel is filtered: not beyond the width of the lobe, and less often where
@@ -88,7 +80,8 @@ vec2 tap_exponent(Center c, Guide q, vec4 value, vec2 offset) {
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (outside_frame(pixel)) return;
+  ivec2 extent = image_extent();
+  if (any(greaterThanEqual(pixel, extent))) return;
   vec4 value = imageLoad(signal, pixel);
   vec4 guide_p = imageLoad(guide, pixel);
   Guide p = decode_guide(guide_p);
@@ -103,9 +96,9 @@ void main() {
   c.view_z = p.view_z;
   c.slope = imageLoad(depth_slope, pixel).xy;
   c.curve = enabled(frame_orthographic) ? 0.0 : 1.0 / c.view_z;
-  c.footprint = pixel_footprint(c.view_z);
+  c.footprint = pixel_footprint(c.view_z) * float(constants.pixels_per_texel);
   c.brightness = brightness(value);
-  vec2 variance = has(atrous_variance_prefilter) ? smooth_variance(pixel) : variance_of(value);
+  vec2 variance = has(atrous_variance_prefilter) ? smooth_variance(pixel, extent) : variance_of(value);
   c.noise = sqrt(max(variance, vec2(0.0)));
 
   int step = step_at(c.roughness);
@@ -115,7 +108,8 @@ void main() {
   for (int y = -constants.rows; y <= constants.rows; ++y) {
     for (int x = -constants.columns; x <= constants.columns; ++x) {
       ivec2 tap = pixel + ivec2(x, y) * step + shift;
-      if ((x == 0 && y == 0) || any(lessThan(tap, ivec2(0))) || outside_frame(tap)) continue;
+      if (x == 0 && y == 0) continue;
+      if (any(lessThan(tap, ivec2(0))) || any(greaterThanEqual(tap, extent))) continue;
       vec4 guide_q = imageLoad(guide, tap);
       if (guide_is_background(guide_q)) continue;
       vec4 value_q = imageLoad(signal, tap);

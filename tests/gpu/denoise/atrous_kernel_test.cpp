@@ -164,8 +164,8 @@ class AtrousRig {
   }
 
   Signal kind_;
-  shared::AtrousConstants constants_{};
-  kernels::AtrousHalves halves_{};
+  shared::AtrousConstants constants_{.pixels_per_texel = 1};
+  kernels::AtrousHalves halves_{{.pixels_per_texel = 1}, {.pixels_per_texel = 1}};
   FrameRig rig_;
   gpu::ImageRef guide_, slope_, signal_, by_shader_, by_host_;
   gpu::ImageRef between_, by_two_shaders_, both_by_host_;
@@ -182,6 +182,7 @@ shared::AtrousConstants constants(int level, int columns, int rows, std::uint32_
   made.depth_sigma = 1.0f;
   made.start_threshold = start_threshold;
   made.flags = flags;
+  made.pixels_per_texel = 1;
   return made;
 }
 

@@ -152,10 +152,9 @@ struct Filter {
   Filter(const Input& in, const shared::AtrousConstants& given, bool specular, int iterations = 1,
          protocol::BlurKernel kernel = protocol::BlurKernel::full)
       : rig(SceneBuilder().build(), look({0, 0, 3}, {0, 0, 0}), {.extent = extent}),
-        guide{rig.input("guide", VK_FORMAT_R32G32B32A32_SFLOAT, in.guide), {}},
-        signal(rig.input("signal", VK_FORMAT_R32G32B32A32_SFLOAT, in.signal)) {
-    render::GBuffer gbuffer;
-    gbuffer.depth_slope = rig.input("slope", VK_FORMAT_R32G32_SFLOAT, in.slope);
+        input{rig.input("guide", VK_FORMAT_R32G32B32A32_SFLOAT, in.guide),
+              rig.input("slope", VK_FORMAT_R32G32_SFLOAT, in.slope),
+              rig.input("signal", VK_FORMAT_R32G32B32A32_SFLOAT, in.signal)} {
     const auto constants = [given](const render::KernelShape& shape) {
       shared::AtrousConstants made = given;
       made.level = given.level + shape.level;
@@ -165,7 +164,7 @@ struct Filter {
     };
     const auto& shader = specular ? shaders::specular_atrous : shaders::visibility_atrous;
     rig.plan().use_host_kernels(false);  // atrous_kernel_test.cpp compares the host kernel
-    filtered = render::blur(rig.plan(), rig.inputs(), gbuffer, guide,
+    filtered = render::blur(rig.plan(), rig.inputs(), input,
                             {.name = "test",
                              .buffers = render::specular_atrous_buffers,
                              .program = rig.inputs().program(shader),
@@ -173,7 +172,7 @@ struct Filter {
                              .iterations = iterations,
                              .shape = kernel,
                              .constants = constants},
-                            signal, {});
+                            {});
   }
   render::FloatImage run() {
     rig.run();
@@ -181,8 +180,7 @@ struct Filter {
   }
 
   FrameRig rig;
-  render::Guide guide;
-  gpu::ImageRef signal;
+  render::AtrousInput input;
   gpu::ImageRef filtered;
 };
 
@@ -193,6 +191,7 @@ shared::AtrousConstants plain() {
   constants.depth_sigma = 1.0f;
   constants.start_threshold = 2.0f;
   constants.flags = shared::atrous_variance_prefilter;
+  constants.pixels_per_texel = 1;
   return constants;
 }
 

@@ -115,6 +115,10 @@ void other_settings(protocol::Settings& s) {
   s.exposure.mode = protocol::ExposureMode::automatic;
 }
 
+void half_resolution(protocol::Settings& s) {
+  s.shadow_blur.half_resolution = true;
+}
+
 class WholeFrameSizes : public testing::TestWithParam<Configuration> {};
 
 INSTANTIATE_TEST_SUITE_P(
@@ -122,7 +126,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Configuration{"best", "auto", protocol::PrimaryVisibility::rays, defaults},
         Configuration{"software", "software", protocol::PrimaryVisibility::raster, defaults},
-        Configuration{"others", "auto", protocol::PrimaryVisibility::raster, other_settings}),
+        Configuration{"others", "auto", protocol::PrimaryVisibility::raster, other_settings},
+        Configuration{"half", "auto", protocol::PrimaryVisibility::raster, half_resolution}),
     [](const auto& tested) { return std::string(tested.param.name); });
 
 // Sizes that are no multiple of the 8 x 8 workgroup, 1 x 1, and one pixel short of 1080p; with

@@ -2,6 +2,7 @@
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 
@@ -14,6 +15,10 @@ void for_each_range(int count, int grain, RangeWork work) {
       work(range * grain, std::min((range + 1) * grain, count));
     }
   });
+}
+
+int processors() {
+  return tbb::this_task_arena::max_concurrency();
 }
 
 }  // namespace heliograph::render::kernels

@@ -22,4 +22,7 @@ class RangeWork {
 /// Not a template: the headers of TBB take longer to compile than most kernels.
 void for_each_range(int count, int grain, RangeWork work);
 
+/// How many of them there are for this process.
+int processors();
+
 }  // namespace heliograph::render::kernels

@@ -4,11 +4,11 @@
 
 namespace heliograph::render {
 
-gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                   const Guide& guide, const AtrousConfig& config, gpu::ImageRef signal,
-                   std::optional<Feedback> feedback) {
+gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const AtrousInput& input,
+                   const AtrousConfig& config, std::optional<Feedback> feedback) {
+  const auto size = gpu::FrameSize::squares(config.pixels_per_texel);
   const auto image = [&](const BufferDescription& buffer) {
-    return plan.image(buffer.name, VK_FORMAT_R32G32B32A32_SFLOAT);
+    return plan.image(buffer.name, VK_FORMAT_R32G32B32A32_SFLOAT, 0, size);
   };
   const bool separable = config.shape == protocol::BlurKernel::separable;
   const int last = config.iterations - 1;
@@ -31,19 +31,19 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& g
 
   const auto pass = [&](const std::string& name, gpu::ImageRef from, gpu::ImageRef to, auto shape) {
     plan.pass(name, config.program)
-        .bind<kernels::AtrousBindings>({.guide = guide.surface,
-                                        .depth_slope = gbuffer.depth_slope,
+        .bind<kernels::AtrousBindings>({.guide = input.guide,
+                                        .depth_slope = input.depth_slope,
                                         .signal = from,
                                         .filtered = to})
         .constants([constants = config.constants, shape] { return constants(shape()); })
-        .dispatch(gpu::each_pixel())
+        .dispatch(size)
         .host(config.kernel, in.constants);
   };
   const auto host_pass = [&](const std::string& name, gpu::ImageRef from, gpu::ImageRef to,
                              auto half_shape) {
     plan.host(name, {})
-        .bind<kernels::AtrousBindings>({.guide = guide.surface,
-                                        .depth_slope = gbuffer.depth_slope,
+        .bind<kernels::AtrousBindings>({.guide = input.guide,
+                                        .depth_slope = input.depth_slope,
                                         .signal = from,
                                         .filtered = to})
         .constants([constants = config.constants, half_shape] {
@@ -51,6 +51,8 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& g
         })
         .host(config.halves_kernel, in.constants);
   };
+  gpu::ImageRef signal = input.signal;
+  const auto side = static_cast<int>(config.pixels_per_texel);
   for (int level = 0; level <= last; ++level) {
     gpu::ImageRef to = level == last ? result : between[level % 2];
     if (feedback && feedback->level == level) to = feedback->image;
@@ -58,10 +60,10 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& g
     if (separable) {
       // Which half comes first changes from iteration to iteration and frame to frame: otherwise
       // all streaks would have one direction.
-      const auto half_shape = [&frame = in.constants, level](bool first_half) {
+      const auto half_shape = [&frame = in.constants, level, side](bool first_half) {
         const bool columns =
             ((frame.sample_index + static_cast<std::uint32_t>(level)) % 2 == 0) == first_half;
-        return KernelShape{level, columns ? 2 : 0, columns ? 0 : 2, first_half};
+        return KernelShape{level, columns ? 2 : 0, columns ? 0 : 2, first_half, side};
       };
       if (halves_at_once) {
         host_pass(name, signal, to, half_shape);
@@ -70,7 +72,7 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& g
         pass(name + ".second", half, to, [half_shape] { return half_shape(false); });
       }
     } else {
-      pass(name, signal, to, [level] { return KernelShape{level, 2, 2, false}; });
+      pass(name, signal, to, [level, side] { return KernelShape{level, 2, 2, false, side}; });
     }
     signal = to;
   }

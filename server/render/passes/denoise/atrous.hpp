@@ -36,6 +36,15 @@ inline constexpr AtrousBuffers visibility_atrous_buffers{
      .colors = ViewColors::channels,
      .description = "Denoised shadow (red) and ambient (green) visibility; variances (zw).",
      .aspects = visibility_denoised_aspects}};
+inline constexpr AtrousBuffers visibility_half_atrous_buffers{
+    {"visibility.half.blur.even", ViewColors::channels,
+     "Visibility at half the size after an iteration of the blur."},
+    {"visibility.half.blur.odd", ViewColors::channels,
+     "Visibility at half the size after an iteration of the blur."},
+    {"visibility.half.blur.half", ViewColors::channels,
+     "Visibility at half the size after the first half of a separable iteration of the blur."},
+    {"visibility.half.denoised", ViewColors::channels,
+     "Denoised shadow (red) and ambient (green) visibility at half the size; variances (zw)."}};
 inline constexpr AtrousBuffers specular_atrous_buffers{
     {"specular.blur.even", ViewColors::radiance, "Reflections after an iteration of the blur."},
     {"specular.blur.odd", ViewColors::radiance, "Reflections after an iteration of the blur."},
@@ -45,6 +54,13 @@ inline constexpr AtrousBuffers specular_atrous_buffers{
      .colors = ViewColors::radiance,
      .description = "Denoised reflections, demodulated; variance of their brightness (w).",
      .aspects = specular_denoised_aspects}};
+
+/// Images of one size: what is blurred and what guides it.
+struct AtrousInput {
+  gpu::ImageRef guide;        // shaders/lib/denoise/guide.glsl
+  gpu::ImageRef depth_slope;  // from texel to texel
+  gpu::ImageRef signal;
+};
 
 /// A blur of one signal: how often, and what its passes read every frame.
 struct AtrousConfig {
@@ -56,6 +72,7 @@ struct AtrousConfig {
   int iterations;
   protocol::BlurKernel shape;
   std::function<shared::AtrousConstants(const KernelShape&)> constants;
+  std::uint32_t pixels_per_texel = 1;  // of the images, along each axis
 };
 
 /// An image that the result of iteration `level` is written to, for the next frame.
@@ -68,8 +85,7 @@ struct Feedback {
 /// twice as many halves, whose distance between taps doubles from one to the next. A host kernel
 /// runs both halves in one pass.
 /// @return the last iteration's result
-gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                   const Guide& guide, const AtrousConfig& config, gpu::ImageRef signal,
-                   std::optional<Feedback> feedback);
+gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const AtrousInput& input,
+                   const AtrousConfig& config, std::optional<Feedback> feedback);
 
 }  // namespace heliograph::render

@@ -58,10 +58,11 @@ inline shared::TemporalConstants temporal_constants(const FrameInputs& in,
 
 /// One pass of an iteration: both halves of the kernel at once, or one of two.
 struct KernelShape {
-  int level;
-  int columns;
-  int rows;
-  bool first_half;
+  int level = 0;
+  int columns = 0;
+  int rows = 0;
+  bool first_half = false;
+  int pixels_per_texel = 1;  // of the images, along each axis
 };
 
 inline shared::AtrousConstants atrous_constants(const protocol::BlurSettings& settings,
@@ -74,6 +75,7 @@ inline shared::AtrousConstants atrous_constants(const protocol::BlurSettings& se
   constants.luminance_sigma = motion.settled() ? settings.luminance_sigma : settings.moving_sigma;
   constants.normal_power = settings.normal_power;
   constants.depth_sigma = settings.depth_sigma;
+  constants.pixels_per_texel = shape.pixels_per_texel;
   const bool keep =
       shape.first_half && settings.variance_update == protocol::VarianceUpdate::vertical_only;
   constants.flags = (settings.variance_prefilter ? shared::atrous_variance_prefilter : 0u) |

@@ -79,7 +79,8 @@ gpu::ImageRef denoise_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
   if (blurring.enabled) {
     estimate_specular_variance(plan, in, gbuffer, guide, accumulated);
     signal = blur(
-        plan, in, gbuffer, guide, specular_atrous_config(in), accumulated.signal,
+        plan, in, {guide.surface, gbuffer.depth_slope, accumulated.signal},
+        specular_atrous_config(in),
         feedback ? std::optional(Feedback{blurring.feedback, accumulated.history}) : std::nullopt);
   }
   return tone_compressed ? expand(plan, in, signal) : signal;

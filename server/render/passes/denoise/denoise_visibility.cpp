@@ -4,9 +4,11 @@
 #include <glm/gtc/constants.hpp>
 
 #include "render/kernels/signals.hpp"
+#include "render/kernels/visibility_half.hpp"
 #include "render/passes/denoise/atrous.hpp"
 #include "render/passes/denoise/denoise_constants.hpp"
 #include "render/passes/denoise/temporal.hpp"
+#include "render/passes/formats.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
@@ -30,7 +32,7 @@ float widest_light(const FrameInputs& in) {
   return widest;
 }
 
-AtrousConfig visibility_atrous_config(const FrameInputs& in) {
+AtrousConfig visibility_atrous_config(const FrameInputs& in, const AtrousBuffers& buffers) {
   const auto& settings = in.settings.shadow_blur;
   const auto constants = [in, &settings](const KernelShape& shape) {
     shared::AtrousConstants made = atrous_constants(settings, in.scene_motion, shape);
@@ -39,13 +41,59 @@ AtrousConfig visibility_atrous_config(const FrameInputs& in) {
     return made;
   };
   return {"visibility.atrous",
-          visibility_atrous_buffers,
+          buffers,
           in.program(shaders::visibility_atrous),
           kernels::visibility_atrous,
           kernels::visibility_atrous_halves,
           settings.iterations,
           settings.kernel,
           constants};
+}
+
+gpu::FrameSize half_size() {
+  return gpu::FrameSize::squares(2);
+}
+
+AtrousInput halved(gpu::FramePlan& plan, const FrameInputs& in, const AtrousInput& input) {
+  const auto& buffers = half_visibility_buffers;
+  const AtrousInput made{
+      plan.image(buffers.guide.name, formats::four_floats, 0, half_size()),
+      plan.image(buffers.depth_slope.name, VK_FORMAT_R32G32_SFLOAT, 0, half_size()),
+      plan.image(buffers.signal.name, formats::four_floats, 0, half_size())};
+  plan.pass("visibility.halve", in.program(shaders::visibility_halve))
+      .bind<kernels::VisibilityHalveBindings>({.guide = input.guide,
+                                               .depth_slope = input.depth_slope,
+                                               .signal = input.signal,
+                                               .half_guide = made.guide,
+                                               .half_slope = made.depth_slope,
+                                               .half_signal = made.signal})
+      .constants([in] { return atrous_constants(in.settings.shadow_blur, in.scene_motion, {}); })
+      .dispatch(half_size())
+      .host(kernels::visibility_halve, in.constants);
+  return made;
+}
+
+/// The first iteration is that of the upsampling, the others are made at half the size.
+gpu::ImageRef blur_at_half_size(gpu::FramePlan& plan, const FrameInputs& in,
+                                const AtrousInput& input) {
+  AtrousInput half = halved(plan, in, input);
+  AtrousConfig config = visibility_atrous_config(in, visibility_half_atrous_buffers);
+  config.name = "visibility.half.atrous";
+  config.pixels_per_texel = 2;
+  --config.iterations;
+  if (config.iterations > 0) half.signal = blur(plan, in, half, config, std::nullopt);
+  const auto denoised = plan.image(visibility_atrous_buffers.denoised.name, formats::four_floats);
+  plan.pass("visibility.upsample", in.program(shaders::visibility_upsample))
+      .bind<kernels::VisibilityUpsampleBindings>({.guide = input.guide,
+                                                  .depth_slope = input.depth_slope,
+                                                  .signal = input.signal,
+                                                  .half_guide = half.guide,
+                                                  .half_signal = half.signal,
+                                                  .denoised = denoised})
+      .constants([in] { return atrous_constants(in.settings.shadow_blur, in.scene_motion, {}); })
+      .dispatch(gpu::each_pixel())
+      .host(kernels::visibility_upsample, in.constants);
+  return denoised;
 }
 
 }  // namespace
@@ -73,8 +121,10 @@ gpu::ImageRef denoise_visibility(gpu::FramePlan& plan, const FrameInputs& in,
   if (!blurring.enabled) return accumulated.signal;
 
   estimate_visibility_variance(plan, in, gbuffer, guide, accumulated);
+  const AtrousInput input{guide.surface, gbuffer.depth_slope, accumulated.signal};
+  if (blurring.half_resolution && !feedback) return blur_at_half_size(plan, in, input);
   return blur(
-      plan, in, gbuffer, guide, visibility_atrous_config(in), accumulated.signal,
+      plan, in, input, visibility_atrous_config(in, visibility_atrous_buffers),
       feedback ? std::optional(Feedback{blurring.feedback, accumulated.history}) : std::nullopt);
 }
 

@@ -9,6 +9,18 @@ inline constexpr struct DenoiseVisibilityBuffers {
                           "Shadow (red) and ambient (green) visibility of this frame alone."};
 } denoise_visibility_buffers{};
 
+/// Of shadow_blur.half_resolution.
+inline constexpr struct HalfVisibilityBuffers {
+  BufferDescription guide{"visibility.half.guide", ViewColors::direction,
+                          "What guides the blur of visibility at half the size: shading normal "
+                          "times 1 + roughness; view Z, metres (w)."};
+  BufferDescription depth_slope{"visibility.half.depth_slope", ViewColors::difference,
+                                "Change of view Z to the next texel of half the size, metres."};
+  BufferDescription signal{"visibility.half", ViewColors::channels,
+                           "Accumulated shadow (red) and ambient (green) visibility at half the "
+                           "size; variances (zw)."};
+} half_visibility_buffers{};
+
 /// Both visibilities in one image, as one signal: shadow x, ambient y. NaNs become 0.
 gpu::ImageRef combine_visibility(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef shadows,
                                  gpu::ImageRef ambient);

@@ -2,14 +2,19 @@
 
 #include <algorithm>
 
+#include "render/kernels/common/parallel.hpp"
 #include "shaders/embedded.hpp"
 #include "shaders/shared/ray_mask.h"
 
 namespace heliograph::render {
 namespace {
 
-/// Rays of a strip, about: enough for many cores, few enough for their caches.
-constexpr std::uint32_t strip_rays = 1u << 17;
+/// Rays of a strip, about: few enough for little memory, enough for every processor to have many at
+/// a time.
+std::uint32_t strip_rays() {
+  constexpr std::uint32_t least = 1u << 17, of_processor = 1u << 14;
+  return std::max(least, of_processor * static_cast<std::uint32_t>(kernels::processors()));
+}
 
 /// RayCount::blending of a frame's streams; the same in shaders/lib/denoise/frame_blending.glsl.
 std::uint32_t frame_blending(const FrameInputs& in) {
@@ -31,7 +36,7 @@ tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
 std::vector<kernels::Rows> ray_strips(const gpu::FramePlan& plan, VkExtent2D extent) {
   const auto height = static_cast<int>(extent.height);
   constexpr auto tile = static_cast<std::uint32_t>(kernels::tile_side);
-  const std::uint32_t tile_rows = std::max(strip_rays / (extent.width * tile), 1u);
+  const std::uint32_t tile_rows = std::max(strip_rays() / (extent.width * tile), 1u);
   if (!plan.uses_host_kernels()) return {{0, height}};
   const int step = static_cast<int>(tile_rows * tile);
   std::vector<kernels::Rows> strips;

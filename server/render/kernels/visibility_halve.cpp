@@ -1,0 +1,194 @@
+#include "render/kernels/simd/rows.hpp"
+#include "render/kernels/visibility_half.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/kernels/visibility_halve.cpp"
+#include "hwy/foreach_target.h"
+// After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/edge_stopping.hpp"
+#include "render/kernels/simd/view.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::kernels::HWY_NAMESPACE {
+
+/// Lanes are texels of half size side by side.
+template <class D>
+class Halving {
+  using V = hn::Vec<D>;
+  using M = hn::Mask<D>;
+
+  /// One pixel of every square.
+  struct Pixels {
+    Quad<V> guide;
+    Pair<V> slope;
+    Quad<V> signal;
+    M seen;
+  };
+  /// The pixels whose surfaces the texels show.
+  struct First {
+    Quad<V> guide;
+    Pair<V> slope;
+    V x, y;  // in the square
+    M known;
+  };
+  struct Sums {
+    Quad<V> value;
+    V total;
+  };
+
+ public:
+  HWY_INLINE explicit Halving(const VisibilityHalveJob& job)
+      : job_(job),
+        orthographic_((job.frame.flags & shared::frame_orthographic) != 0),
+        halved_width_((job.width + 1) / 2) {}
+
+  HWY_INLINE void rows(int first, int last) const {
+    const int lanes = static_cast<int>(hn::Lanes(d_));
+    for (int y = first; y < last; ++y) {
+      const ViewedRow<D> view(job_.frame, 2 * y);
+      for (int x = 0; x < halved_width_; x += lanes) {
+        block(view, std::min(x, halved_width_ - lanes), y);
+      }
+    }
+  }
+
+ private:
+  HWY_INLINE V set(float value) const { return hn::Set(d_, value); }
+
+  HWY_INLINE void block(const ViewedRow<D>& view, int x, int y) const {
+    const V zero = hn::Zero(d_);
+    First first{{zero, zero, zero, zero}, {zero, zero}, zero, zero, hn::Gt(zero, zero)};
+    Sums sums{{zero, zero, zero, zero}, zero};
+    for (int row = 0; row < 2 && 2 * y + row < job_.height; ++row) {
+      std::array<Pixels, 2> pair;
+      load_pairs(x, 2 * y + row, pair);
+      for (int column = 0; column < 2; ++column) {
+        add(view, pair[static_cast<std::size_t>(column)], static_cast<float>(column),
+            static_cast<float>(row), first, sums);
+      }
+    }
+    const V inverse =
+        hn::IfThenElseZero(hn::Gt(sums.total, zero), reciprocal(hn::Max(sums.total, set(1e-6f))));
+    const V square = inverse * inverse;
+    store4(d_, first.guide, row_of<float>(job_.half_guide, y) + 4 * x);
+    hn::StoreInterleaved2(first.slope.x + first.slope.x, first.slope.y + first.slope.y, d_,
+                          row_of<float>(job_.half_slope, y) + 2 * x);
+    store4(d_,
+           {sums.value.x * inverse, sums.value.y * inverse, sums.value.z * square,
+            sums.value.w * square},
+           row_of<float>(job_.half_signal, y) + 4 * x);
+  }
+
+  HWY_INLINE void add(const ViewedRow<D>& view, const Pixels& q, float column, float row,
+                      First& first, Sums& sums) const {
+    const M begins = hn::AndNot(first.known, q.seen);
+    first.guide = select(begins, q.guide, first.guide);
+    first.slope = {hn::IfThenElse(begins, q.slope.x, first.slope.x),
+                   hn::IfThenElse(begins, q.slope.y, first.slope.y)};
+    first.x = hn::IfThenElse(begins, set(column), first.x);
+    first.y = hn::IfThenElse(begins, set(row), first.y);
+    first.known = hn::Or(first.known, q.seen);
+    const V exponent =
+        edge_exponent(view, first, q.guide, set(column) - first.x, set(row) - first.y);
+    const V weight = edge_weight(q.seen, hn::IfThenElse(begins, set(weight_one), exponent));
+    sums.value.x = hn::MulAdd(weight, q.signal.x, sums.value.x);
+    sums.value.y = hn::MulAdd(weight, q.signal.y, sums.value.y);
+    const V square = weight * weight;
+    sums.value.z = hn::MulAdd(square, q.signal.z, sums.value.z);
+    sums.value.w = hn::MulAdd(square, q.signal.w, sums.value.w);
+    sums.total = sums.total + weight;
+  }
+
+  /// Of two surfaces, the second `dx` and `dy` pixels from the first:
+  /// shaders/lib/denoise/edge_stopping.glsl.
+  HWY_INLINE V edge_exponent(const ViewedRow<D>& view, const First& p, const Quad<V>& q, V dx,
+                             V dy) const {
+    const Triple<V> a{p.guide.x, p.guide.y, p.guide.z}, b{q.x, q.y, q.z};
+    const V sizes = hn::Max(dot(a, a) * dot(b, b), set(1e-24f));
+    const V cosine = dot(a, b) * reciprocal_sqrt(sizes);
+    const V z = hn::Max(p.guide.w, set(1e-20f));
+    const V rise = hn::MulAdd(p.slope.x, dx, p.slope.y * dy);
+    const V curve = orthographic_ ? hn::Zero(d_) : reciprocal(z);
+    const V flattened = orthographic_ ? set(1.0f) : hn::Zero(d_);
+    const V straight = hn::NegMulAdd(rise, curve, set(1.0f));
+    const V off_plane = hn::Abs(hn::NegMulAdd(rise, flattened, hn::MulSub(q.w, straight, z)));
+    const V apart = hn::Sqrt(hn::MulAdd(dx, dx, dy * dy));
+    const V allowed = hn::MulAdd(set(0.5f) * view.footprint(z), apart, hn::Abs(rise));
+    const V inv_allowed = hn::ApproximateReciprocal(
+        hn::Max(allowed * set(job_.constants.depth_sigma / octaves), set(1e-30f)));
+    const float power = job_.constants.normal_power * octaves;
+    const V of_normal = hn::MulAdd(set(power), cosine, set(weight_one - power));
+    return hn::NegMulAdd(off_plane, inv_allowed, of_normal);
+  }
+
+  /// The left and the right pixels of the squares from `x` on, in row `y` of the frame. Where the
+  /// border cuts the last square, its right pixel shows nothing.
+  HWY_INLINE void load_pairs(int x, int y, std::array<Pixels, 2>& pair) const {
+    const float* guide = row_of<const float>(job_.guide, y) + 8 * x;
+    const float* slope = row_of<const float>(job_.depth_slope, y) + 4 * x;
+    const float* signal = row_of<const float>(job_.signal, y) + 8 * x;
+    constexpr std::size_t most = 2 * hn::MaxLanes(D());
+    std::array<float, 4 * most> guides, signals;
+    std::array<float, 2 * most> slopes;
+    const int lanes = static_cast<int>(hn::Lanes(d_)), pixels = job_.width - 2 * x;
+    if (pixels < 2 * lanes) {
+      guide = copied(guide, 4 * pixels, guides);
+      slope = copied(slope, 2 * pixels, slopes);
+      signal = copied(signal, 4 * pixels, signals);
+    }
+    split(load4(d_, guide), load4(d_, guide + 4 * lanes), pair[0].guide, pair[1].guide);
+    split(load4(d_, signal), load4(d_, signal + 4 * lanes), pair[0].signal, pair[1].signal);
+    const Pair<V> low = load2(d_, slope), high = load2(d_, slope + 2 * lanes);
+    split(low.x, high.x, pair[0].slope.x, pair[1].slope.x);
+    split(low.y, high.y, pair[0].slope.y, pair[1].slope.y);
+    for (Pixels& one : pair) one.seen = hn::Gt(one.guide.w, hn::Zero(d_));
+  }
+  template <std::size_t size>
+  static const float* copied(const float* from, int count, std::array<float, size>& to) {
+    std::fill(std::copy_n(from, count, to.begin()), to.end(), 0.0f);
+    return to.data();
+  }
+  HWY_INLINE void split(V low, V high, V& even, V& odd) const {
+    even = low;
+    odd = high;
+#if HWY_TARGET != HWY_SCALAR
+    if constexpr (hn::MaxLanes(D()) > 1) {
+      even = hn::ConcatEven(d_, high, low);
+      odd = hn::ConcatOdd(d_, high, low);
+    }
+#endif
+  }
+  HWY_INLINE void split(const Quad<V>& low, const Quad<V>& high, Quad<V>& even,
+                        Quad<V>& odd) const {
+    split(low.x, high.x, even.x, odd.x);
+    split(low.y, high.y, even.y, odd.y);
+    split(low.z, high.z, even.z, odd.z);
+    split(low.w, high.w, even.w, odd.w);
+  }
+
+  const D d_{};
+  const VisibilityHalveJob& job_;
+  bool orthographic_;
+  int halved_width_;
+};
+
+void halve_rows(const VisibilityHalveJob& job, int first, int last) {
+  run_rows<Halving>(job, (job.width + 1) / 2, first, last);
+}
+
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace heliograph::render::kernels {
+
+HWY_EXPORT(halve_rows);
+
+void visibility_halve(const VisibilityHalveJob& job) {
+  for_each_band((job.height + 1) / 2, [&](int first, int last) {
+    HWY_DYNAMIC_DISPATCH(halve_rows)(job, first, last);
+  });
+}
+
+}  // namespace heliograph::render::kernels
+#endif
