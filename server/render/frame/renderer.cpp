@@ -75,6 +75,7 @@ struct Renderer::State {
   }
   void restart_accumulation() {
     clock.samples = 0;
+    clock.carried_share = 1.0f;
     stale = true;
   }
 
@@ -137,8 +138,11 @@ VkExtent2D Renderer::State::drawn() const {
 }
 
 void Renderer::State::set_drawn() {
+  const auto pixels = [](VkExtent2D size) { return float(size.width) * float(size.height); };
+  const float before = pixels(compiled->plan.drawn());
   compiled->plan.set_drawn(drawn());
   restart_accumulation();
+  clock.carried_share = std::min(before / pixels(drawn()), 1.0f);
 }
 
 void Renderer::State::change_settings(const protocol::Settings& changed) {

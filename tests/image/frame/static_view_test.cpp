@@ -84,6 +84,21 @@ TEST(StaticView, NoiseDecidesBetterThanTheNumberOfSamples) {
   }
 }
 
+// Frames that were drawn smaller leave histories of fewer and larger pixels behind.
+TEST(StaticView, ForgetsReducedFramesSoon) {
+  const render::Frame truth = true_view();
+  const auto similarity_after_motion_at = [&](float scale) {
+    RendererRig rig = make_view();
+    rig.renderer.set_draw_scale(scale);
+    move(rig);
+    rig.renderer.set_draw_scale(1.0f);
+    return ssim(truth, rig.accumulate(8));
+  };
+  const double reduced = similarity_after_motion_at(0.5f), full = similarity_after_motion_at(1.0f);
+  RecordProperty("similarity", std::to_string(reduced) + " " + std::to_string(full));
+  EXPECT_GT(reduced, full - 0.004);
+}
+
 TEST(StaticView, ConvergesToTheMean) {
   RendererRig rig = make_view();
   protocol::Settings settings;
