@@ -10,12 +10,12 @@ layout(local_size_x = 8, local_size_y = 8) in;
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D radiance;
 layout(set = 1, binding = 1, rgba32f) readonly uniform image2D accumulated;
-layout(set = 1, binding = 2, std140) uniform ExposureBlock { ExposureState exposure; };
-layout(set = 1, binding = 3, rgba8) writeonly uniform image2D shown;
+layout(set = 1, binding = 2, r32f) readonly uniform image2D mean_weight;  // of `accumulated`
+layout(set = 1, binding = 3, std140) uniform ExposureBlock { ExposureState exposure; };
+layout(set = 1, binding = 4, rgba8) writeonly uniform image2D shown;
 layout(push_constant) uniform Constants {
   uvec2 shown_size;  // of the frame that is shown, pixels
   uvec2 drawn;       // of `radiance`, whose nearest pixels are shown
-  float mean_share;
 };
 
 vec3 tone_map(vec3 color) {
@@ -31,6 +31,7 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(uvec2(pixel), shown_size))) return;
   ivec2 nearest = ivec2((2u * uvec2(pixel) + 1u) * drawn / (2u * shown_size));
+  float mean_share = imageLoad(mean_weight, pixel).r;
   vec3 color = mean_share < 1.0 ? imageLoad(radiance, nearest).rgb : vec3(0.0);
   if (mean_share > 0.0) color = mix(color, imageLoad(accumulated, pixel).rgb, mean_share);
   color = max(color, 0.0) * exposure.factor;

@@ -91,6 +91,19 @@ std::vector<render::Frame> Stage::time(const protocol::Settings& settings, const
   return frames;
 }
 
+std::vector<render::Frame> Stage::rest(const protocol::Settings& settings, const Shot& shot,
+                                       int samples) const {
+  const auto renderer = start(settings, shot);
+  for (int i = 0; i + 1 < shot.frames; ++i) {
+    show_moment(*renderer, shot, i);
+    renderer->render();
+  }
+  show_moment(*renderer, shot, shot.frames - 1);
+  std::vector<render::Frame> frames;
+  for (int i = 0; i < samples; ++i) frames.push_back(renderer->render());
+  return frames;
+}
+
 std::vector<render::Frame> Stage::ground_truth(GroundTruth source, const Shot& shot,
                                                int samples) const {
   protocol::Settings settings;

@@ -51,6 +51,11 @@ class Stage {
   /// Renders the whole shot.
   Played play(const protocol::Settings& settings, const Shot& shot) const;
 
+  /// The view at rest after the whole shot: its last frame, and those with more samples of the same
+  /// view up to `samples`.
+  std::vector<render::Frame> rest(const protocol::Settings& settings, const Shot& shot,
+                                  int samples) const;
+
   /// Ground truth of those frames, `samples` per pixel.
   std::vector<render::Frame> ground_truth(GroundTruth source, const Shot& shot, int samples) const;
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstring>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -234,10 +236,13 @@ class FramePlan {
   void compile();
 
   /// Runs all passes, waits for them, reads the timers and swaps the histories. `canceled` is asked
-  /// before each pass on CPU devices, up to finish_frames_from_here(); where it returns true, the
-  /// result is false, the remaining passes do not run and histories do not swap. Images have no
-  /// defined content then.
+  /// before each pass on CPU devices, up to finish_frames_from_here(), and by long passes while
+  /// they run, from any thread but never from two at once; where it returns true, the result is
+  /// false, the remaining passes do not run and histories do not swap. Images have no defined
+  /// content then.
   bool execute(const std::function<bool()>& canceled = {});
+  /// Whether the frame that runs is canceled: what a pass writes is not read any more. Thread safe.
+  bool is_canceled() const;
   /// The frame that just ran, as read_back() asked for it: level 0, rows tightly packed.
   std::vector<std::uint8_t> read() const;
   /// Of every pass, in order; below 0 where it did not run.
@@ -296,6 +301,7 @@ class FramePlan {
   bool leaves_out(std::uint32_t index) const;
   bool reads_left_out(std::uint32_t index) const;
   PassBuilder add(Pass pass);
+  bool run_passes();
   void run_host_kernel(const Pass& pass) const;
   void check_pass(const Pass& pass) const;
   void derive_barriers();
@@ -337,8 +343,11 @@ class FramePlan {
   std::array<std::shared_ptr<const MemoryBlock>, 2> history_blocks_;
   std::vector<std::pair<std::uint32_t, std::uint64_t>> history_offsets_;  // of `current` ones
   std::vector<std::uint32_t> kept_;
-  std::uint32_t conditions_ = 0;              // of passes, made so far
-  std::size_t cancelable_ = ~std::size_t{0};  // passes in front of which a frame may be canceled
+  std::uint32_t conditions_ = 0;                          // of passes, made so far
+  const std::function<bool()>* asks_canceled_ = nullptr;  // while a frame may be canceled
+  mutable std::mutex asking_;
+  mutable std::atomic<bool> canceled_ = false;  // the frame that runs
+  std::size_t cancelable_ = ~std::size_t{0};    // passes in front of which a frame may be canceled
   bool keeps_images_ = false;
   std::uint32_t parity_ = 0;
   bool host_kernels_ = false;

@@ -32,12 +32,37 @@ bool FramePlan::execute(const std::function<bool()>& canceled) {
   }
   submits_ = 0;
   recording_ = false;
+  canceled_ = false;
+  // Where passes are timed by the clock, nothing is recorded that was not submitted.
+  asks_canceled_ = canceled && timed_by_clock() ? &canceled : nullptr;
+  const bool finished = run_passes();
+  asks_canceled_ = nullptr;
+  if (!finished) return false;
+  if (readback_.copies()) readback_.record(recorder(), get(read_back_));
+  flush();
+  if (!timed_by_clock()) read_timers();
+  parity_ ^= 1;
+  return true;
+}
+
+bool FramePlan::is_canceled() const {
+  if (canceled_) return true;
+  if (!asks_canceled_) return false;
+  // One thread that asks is enough.
+  const std::unique_lock lock(asking_, std::try_to_lock);
+  if (lock && (*asks_canceled_)()) canceled_ = true;
+  return canceled_;
+}
+
+/// Whether none of them was canceled.
+bool FramePlan::run_passes() {
   bool barrier = false;  // of passes left out: those behind them rely on it
   for (std::size_t i = 0; i < passes_.size(); ++i) {
     const Pass& pass = passes_[i];
     timings_[i].milliseconds = -1.0f;  // not run
-    // Where passes are timed by the clock, nothing is recorded that was not submitted.
-    if (i < cancelable_ && canceled && timed_by_clock() && canceled()) return false;
+    if (canceled_) return false;
+    if (i >= cancelable_) asks_canceled_ = nullptr;
+    if (is_canceled()) return false;
     barrier |= pass.barrier_before;
     if (pass.condition && !pass.condition()) {
       barrier |= !pass.program;
@@ -64,11 +89,7 @@ bool FramePlan::execute(const std::function<bool()>& canceled) {
     }
     timings_[i].milliseconds = since(begun);
   }
-  if (readback_.copies()) readback_.record(recorder(), get(read_back_));
-  flush();
-  if (!timed_by_clock()) read_timers();
-  parity_ ^= 1;
-  return true;
+  return !canceled_;
 }
 
 void FramePlan::run_host_kernel(const Pass& pass) const {

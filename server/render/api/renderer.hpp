@@ -66,9 +66,9 @@ class Renderer {
   bool needs_frame() const;
   /// Renders the next frame; the empty scene is black.
   Frame render();
-  /// The same, or no frame if `canceled`, which is asked between passes on CPU devices, returns
-  /// true. The next frame then continues the histories of the one before; until then no buffer is
-  /// valid.
+  /// The same, or no frame if `canceled`, which is asked between and in passes on CPU devices, from
+  /// any of their threads, returns true. The next frame then continues the histories of the one
+  /// before; until then no buffer is valid.
   std::optional<Frame> render(const std::function<bool()>& canceled);
 
   /// The work behind the last frame's pass times; slow, for measurements.

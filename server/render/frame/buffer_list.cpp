@@ -16,6 +16,7 @@
 #include "render/passes/denoise/temporal.hpp"
 #include "render/passes/gbuffer/gbuffer.hpp"
 #include "render/passes/post/accumulate.hpp"
+#include "render/passes/post/mean_weight.hpp"
 #include "render/passes/post/present.hpp"
 #include "render/passes/post/temporal_antialias.hpp"
 #include "render/passes/reference/reference.hpp"
@@ -43,13 +44,13 @@ std::vector<BufferDescription> joined(const Tables&... tables) {
 /// Every buffer that a pass may write, in the order of the frame; which of them a frame has follows
 /// from settings and scene.
 const std::vector<BufferDescription>& all_buffers() {
-  static const std::vector<BufferDescription> buffers =
-      joined(present_buffers, gbuffer_buffers, reproject_buffers, sampling_plan_buffers,
-             visibility_buffers, specular_buffers, denoise_visibility_buffers,
-             visibility_temporal_buffers, half_visibility_buffers, visibility_half_atrous_buffers,
-             visibility_atrous_buffers, denoise_specular_buffers, specular_temporal_buffers,
-             specular_atrous_buffers, skybox_buffers, compose_buffers, blended_buffers,
-             reference_buffers, accumulate_buffers, temporal_antialias_buffers);
+  static const std::vector<BufferDescription> buffers = joined(
+      present_buffers, gbuffer_buffers, reproject_buffers, sampling_plan_buffers,
+      visibility_buffers, specular_buffers, denoise_visibility_buffers, visibility_temporal_buffers,
+      half_visibility_buffers, visibility_half_atrous_buffers, visibility_atrous_buffers,
+      denoise_specular_buffers, specular_temporal_buffers, specular_atrous_buffers, skybox_buffers,
+      compose_buffers, blended_buffers, reference_buffers, accumulate_buffers,
+      temporal_antialias_buffers, mean_weight_buffers);
   return buffers;
 }
 

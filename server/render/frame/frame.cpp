@@ -8,6 +8,7 @@
 #include "render/passes/gbuffer/draw_gbuffer.hpp"
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
 #include "render/passes/post/accumulate.hpp"
+#include "render/passes/post/mean_weight.hpp"
 #include "render/passes/post/present.hpp"
 #include "render/passes/post/temporal_antialias.hpp"
 #include "render/passes/reference/reference.hpp"
@@ -78,7 +79,9 @@ FrameOutputs declare_reference(gpu::FramePlan& plan, const FrameInputs& in) {
   const gpu::ImageRef sample = trace_reference(plan, in);
   const gpu::History accumulated = accumulate(plan, in, sample);
   const Exposure exposure = expose(plan, in, sample, accumulated.current);
-  return {accumulated, exposure, sample, present(plan, in, exposure, sample, accumulated.current)};
+  const gpu::ImageRef weight = weigh_mean(plan, in, exposure, sample, accumulated.current);
+  return {accumulated, exposure, sample, weight,
+          present(plan, in, exposure, sample, accumulated.current, weight)};
 }
 
 }  // namespace
@@ -124,8 +127,9 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
       accumulate(plan, in, traces_reference ? trace_reference(plan, in) : composed.noisy);
   const Exposure exposure = expose(plan, in, composed.hdr, accumulated.current);
   const gpu::ImageRef resolved = temporal_antialias(plan, in, visible, exposure, composed.hdr);
-  const gpu::ImageRef output = present(plan, in, exposure, resolved, accumulated.current);
-  return {accumulated, exposure, resolved, output};
+  const gpu::ImageRef weight = weigh_mean(plan, in, exposure, resolved, accumulated.current);
+  const gpu::ImageRef output = present(plan, in, exposure, resolved, accumulated.current, weight);
+  return {accumulated, exposure, resolved, weight, output};
 }
 
 }  // namespace heliograph::render

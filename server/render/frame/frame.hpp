@@ -10,8 +10,9 @@ namespace heliograph::render {
 struct FrameOutputs {
   gpu::History accumulated;  // linear radiance
   Exposure exposure;
-  gpu::ImageRef radiance;  // of the frame alone, as present() reads it
-  gpu::ImageRef output;    // sRGB, RGBA8
+  gpu::ImageRef radiance;     // of the frame alone, as present() reads it
+  gpu::ImageRef mean_weight;  // of what is accumulated in what is shown
+  gpu::ImageRef output;       // sRGB, RGBA8
 };
 
 /// Declares all passes of a frame, in order.

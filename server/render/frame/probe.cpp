@@ -22,31 +22,34 @@ glm::vec4 texel(const gpu::Image& image, glm::uvec2 pixel) {
   return {value[0], value[1], value[2], value[3]};
 }
 
-/// Blends the mean into the frame's own radiance, as present() does; alpha is 1.
-void mix(FloatImage& own, const FloatImage& mean, float mean_weight) {
+/// Blends the mean into the frame's own radiance by its weight in x of `weights`, as present()
+/// does; alpha is 1.
+void mix(FloatImage& own, const FloatImage& mean, const FloatImage& weights) {
   for (std::size_t i = 0; i < own.rgba.size(); ++i) {
-    float value = mean_weight < 1.0f ? own.rgba[i] : 0.0f;
-    if (mean_weight > 0.0f) value += (mean.rgba[i] - value) * mean_weight;
+    const float weight = weights.rgba[i / 4 * 4];
+    float value = weight < 1.0f ? own.rgba[i] : 0.0f;
+    if (weight > 0.0f) value += (mean.rgba[i] - value) * weight;
     own.rgba[i] = i % 4 == 3 ? 1.0f : std::max(value, 0.0f);
   }
 }
 
 }  // namespace
 
-FloatImage shown_radiance(const CompiledFrame& compiled, float mean_weight) {
+FloatImage shown_radiance(const CompiledFrame& compiled) {
   const auto read = [&](gpu::ImageRef ref) {
     const auto [image, drawn] = compiled.latest(ref);
     return read_image(image, drawn);
   };
   FloatImage radiance = read(compiled.outputs.radiance);
+  FloatImage mean = read(compiled.outputs.accumulated.current);
   // Frames that are reconstructed from smaller ones show none of the mean, which is as small.
-  mix(radiance, mean_weight > 0.0f ? read(compiled.outputs.accumulated.current) : radiance,
-      mean_weight);
+  if (mean.rgba.size() != radiance.rgba.size()) mean = radiance;
+  mix(radiance, mean, read(compiled.outputs.mean_weight));
   return radiance;
 }
 
 std::vector<BufferValue> inspect_buffers(const CompiledFrame& compiled, const ViewContext& context,
-                                         float mean_weight, glm::vec2 point) {
+                                         glm::vec2 point) {
   std::vector<BufferValue> values;
   for (const BufferInfo& buffer : compiled.buffers) {
     if (buffer.name == present_buffers.radiance.name) {
@@ -56,7 +59,7 @@ std::vector<BufferValue> inspect_buffers(const CompiledFrame& compiled, const Vi
         return read_texel(image, pixel.x, pixel.y);
       };
       FloatImage value = read(compiled.outputs.radiance);
-      mix(value, read(compiled.outputs.accumulated.current), mean_weight);
+      mix(value, read(compiled.outputs.accumulated.current), read(compiled.outputs.mean_weight));
       values.push_back({buffer.name, std::move(value.rgba), {}});
       continue;
     }

@@ -12,7 +12,6 @@
 #include "render/frame/compiled_frame.hpp"
 #include "render/frame/frame_constants.hpp"
 #include "render/frame/probe.hpp"
-#include "render/passes/post/accumulate.hpp"
 #include "render/passes/post/present.hpp"
 #include "render/passes/sampling/plan_samples.hpp"
 #include "render/resources/moving_scene.hpp"
@@ -76,6 +75,7 @@ struct Renderer::State {
   }
   void restart_accumulation() {
     clock.samples = 0;
+    clock.carried_share = 1.0f;
     stale = true;
   }
 
@@ -86,7 +86,6 @@ struct Renderer::State {
   bool has_previous = false;
   std::uint32_t sample_index = 0;  // frames since the history was invalidated
   FrameClock clock;
-  float shown_mean_weight = 0.0f;  // in the last frame's output
   SceneMotion scene_motion;
   bool keeps_buffers = true;          // as requested
   bool has_buffers = false;           // of the last frame
@@ -139,8 +138,11 @@ VkExtent2D Renderer::State::drawn() const {
 }
 
 void Renderer::State::set_drawn() {
+  const auto pixels = [](VkExtent2D size) { return float(size.width) * float(size.height); };
+  const float before = pixels(compiled->plan.drawn());
   compiled->plan.set_drawn(drawn());
   restart_accumulation();
+  clock.carried_share = std::min(before / pixels(drawn()), 1.0f);
 }
 
 void Renderer::State::change_settings(const protocol::Settings& changed) {
@@ -164,7 +166,7 @@ void Renderer::State::use_newest_shaders() {
 }
 
 std::optional<FloatImage> Renderer::State::read(std::string_view name) const {
-  if (name == present_buffers.radiance.name) return shown_radiance(*compiled, shown_mean_weight);
+  if (name == present_buffers.radiance.name) return shown_radiance(*compiled);
   const View view = find_view(name);
   const auto image = view ? compiled->find(view.buffer->name) : std::nullopt;
   if (!image) return std::nullopt;
@@ -334,7 +336,6 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
     return std::nullopt;
   }
   state.has_buffers = state.compiled->plan.keeps_images();
-  state.shown_mean_weight = mean_weight(state.compiled->inputs);
   if (state.clock.samples == 0) {
     state.clock.first_counts = !leaves_samples_out(state.compiled->inputs);
   }
@@ -402,7 +403,7 @@ std::vector<BufferValue> Renderer::inspect(glm::vec2 point) const {
   const CompiledFrame& compiled = *state_->compiled;
   return inspect_buffers(
       compiled, {state_->constants, exposure_factor(compiled.plan, compiled.outputs.exposure)},
-      state_->shown_mean_weight, point);
+      point);
 }
 
 protocol::Result<std::optional<SurfacePoint>> Renderer::pick(glm::vec2 point) const {

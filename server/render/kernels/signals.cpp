@@ -12,6 +12,25 @@ float sanitize(float value) {
   return std::isfinite(value) ? value : 0.0f;
 }
 
+void start_mean(const float* sample, int width, float* mean) {
+  std::copy_n(sample, 4 * width, mean);
+  for (int x = 0; x < width; ++x) mean[4 * x + 3] = 0.0f;
+}
+
+float luminance_of(const float* color) {
+  return 0.2126f * color[0] + (0.7152f * color[1] + 0.0722f * color[2]);
+}
+
+void add_to_mean(const float* sample, const float* previous, int width, float weight, float* mean) {
+  const auto mixed = [weight](float a, float b) { return a + (b - a) * weight; };
+  for (int i = 0; i < 4 * width; i += 4) {
+    for (int c = i; c < i + 3; ++c) mean[c] = mixed(previous[c], sample[c]);
+    const float light = luminance_of(sample + i);
+    const float product = (light - luminance_of(previous + i)) * (light - luminance_of(mean + i));
+    mean[i + 3] = mixed(previous[i + 3], product);
+  }
+}
+
 }  // namespace
 
 void visibility_combine(const CombineJob& job) {
@@ -38,11 +57,9 @@ void accumulate(const AccumulateJob& job) {
       const float* const previous = job.previous.row<const float>(row);
       float* const mean = job.mean.row<float>(row);
       if (job.constants.weight >= 1.0f) {
-        std::copy_n(sample, 4 * job.width, mean);
-        continue;
-      }
-      for (int i = 0; i < 4 * job.width; ++i) {
-        mean[i] = previous[i] + (sample[i] - previous[i]) * job.constants.weight;
+        start_mean(sample, job.width, mean);
+      } else {
+        add_to_mean(sample, previous, job.width, job.constants.weight, mean);
       }
     }
   });

@@ -15,7 +15,8 @@ struct CombineBindings {
 using CombineJob = gpu::HostPass<CombineBindings>;
 void visibility_combine(const CombineJob& job);
 
-/// The running mean of a static view: shaders/post/accumulate.comp.
+/// The running mean of a static view, and in w the variance of its samples' luminance:
+/// shaders/post/accumulate.comp.
 template <class Stage>
 struct AccumulateBindings {
   gpu::Read<Stage> sample, previous;  // rgba32f

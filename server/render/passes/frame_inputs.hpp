@@ -21,6 +21,9 @@ struct FrameClock {
   float seconds = 1.0f / 60.0f;  // since the frame before
   /// Whether the first of these samples is part of the mean: it is not if it left pixels out.
   bool first_counts = true;
+  /// How many samples a static view's histories brought along, as a part of what they count: less
+  /// than 1 where they come from frames that were drawn smaller.
+  float carried_share = 1.0f;
 };
 
 inline glm::uvec2 size_of(VkExtent2D extent) {

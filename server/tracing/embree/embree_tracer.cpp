@@ -74,6 +74,7 @@ void trace_batches(const gpu::FramePlan& plan, const RayStream& stream, gpu::Buf
   const std::size_t size = batch_size(count);
   const std::size_t batches = (count + size - 1) / size;
   tbb::parallel_for(std::size_t(0), batches, [&](std::size_t batch) {
+    if (plan.is_canceled()) return;
     const std::size_t first = batch * size;
     trace(RayBatch{.rays = rays.subspan(first, std::min(size, count - first)),
                    .blending = header.blending,

@@ -195,6 +195,28 @@ TEST_F(FramePlanTest, CanceledFrameDoesNotSwapHistories) {
   EXPECT_EQ(value(history.current), 2.0f);
 }
 
+TEST_F(FramePlanTest, PassesSeeThatTheirFrameIsCanceled) {
+  if (!device_.is_cpu()) GTEST_SKIP() << "frames are canceled on CPU devices only";
+  int asked = 0, seen = 0;
+  bool behind = false;
+  plan_.host("long", [&] {
+    for (int i = 0; i < 10; ++i) seen += plan_.is_canceled();
+  });
+  plan_.host("behind", [&] { behind = true; });
+  plan_.finish_frames_from_here();
+  plan_.host("last", [&] { EXPECT_FALSE(plan_.is_canceled()) << "too late"; });
+  plan_.compile();
+  EXPECT_FALSE(plan_.execute([&] { return asked++ == 4; })) << "also if it is true only once";
+  EXPECT_EQ(asked, 5) << "once before the pass, then in it until it was true";
+  EXPECT_EQ(seen, 7);
+  EXPECT_FALSE(behind);
+  asked = 0;
+  EXPECT_TRUE(plan_.execute([&] { return asked++ > 11; })) << "asked 12 times before the end";
+  EXPECT_TRUE(behind);
+  EXPECT_FALSE(plan_.is_canceled());
+  EXPECT_TRUE(plan_.execute());
+}
+
 TEST_F(FramePlanTest, ReadsBackRequestedImageEveryFrame) {
   const History history = plan_.history("count", format);
   add("count", history.previous, history.current);

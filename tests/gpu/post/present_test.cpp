@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "render/passes/post/mean_weight.hpp"
 #include "tests/support/frame_rig.hpp"
 
 namespace heliograph::test {
@@ -23,7 +24,9 @@ class PresentTest : public testing::Test {
     const auto image = rig.input("radiance", VK_FORMAT_R32G32B32A32_SFLOAT,
                                  std::vector(extent.width * extent.height, glm::vec4(radiance, 1)));
     const auto exposure = render::expose(rig.plan(), rig.inputs(), image, image);
-    const auto presented = render::present(rig.plan(), rig.inputs(), exposure, image, image);
+    const auto weight = render::weigh_mean(rig.plan(), rig.inputs(), exposure, image, image);
+    const auto presented =
+        render::present(rig.plan(), rig.inputs(), exposure, image, image, weight);
     rig.run();
     const render::FloatImage first = rig.read(presented);
     rig.run();
@@ -69,6 +72,7 @@ TEST_F(PresentTest, ExposureIsInStops) {
 
 TEST_F(PresentTest, BlendsDenoisedAndAccumulatedBySampleCount) {
   protocol::Settings settings = linear();
+  settings.accumulation.by_noise = false;
   settings.accumulation.blend_samples = 8;
   FrameRig rig(SceneBuilder().build(), look({0, 0, 3}, {0, 0, 0}),
                {.extent = extent, .settings = settings});
@@ -78,7 +82,8 @@ TEST_F(PresentTest, BlendsDenoisedAndAccumulatedBySampleCount) {
   };
   const auto frame = flat("frame", 0.9f), average = flat("mean", 0.1f);
   const auto exposure = render::expose(rig.plan(), rig.inputs(), frame, average);
-  const auto image = render::present(rig.plan(), rig.inputs(), exposure, frame, average);
+  const auto weight = render::weigh_mean(rig.plan(), rig.inputs(), exposure, frame, average);
+  const auto image = render::present(rig.plan(), rig.inputs(), exposure, frame, average, weight);
   for (const auto& [samples, expected] :
        {std::pair(0u, 0.9), {8u, 0.5}, {24u, 0.3}, {8000u, 0.1008}}) {
     rig.set_accumulated(samples);

@@ -36,6 +36,7 @@ inline scene::Camera spheres_camera() {
 inline protocol::Settings denoised_only() {
   protocol::Settings settings;
   settings.antialiasing.jitter = settings.antialiasing.temporal = false;
+  settings.accumulation.by_noise = false;
   settings.accumulation.blend_samples = 4096;
   settings.accumulation.max_samples = 4096;
   return settings;

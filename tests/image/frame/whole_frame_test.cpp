@@ -56,6 +56,7 @@ protocol::Settings scaled_settings(float size) {
   protocol::Settings settings;
   settings.ambient.radius *= size;
   settings.accumulation.max_samples = 4096;
+  settings.accumulation.by_noise = false;
   settings.accumulation.blend_samples = 4096;  // shows the denoised frame
   return settings;
 }

@@ -32,6 +32,7 @@ protocol::Settings without_noise() {
   settings.specular.enabled = false;
   settings.ambient.occlusion = false;
   settings.accumulation.max_samples = 4096;
+  settings.accumulation.by_noise = false;
   settings.accumulation.blend_samples = 4096;  // shows the antialiased frame
   return settings;
 }
@@ -205,6 +206,7 @@ TEST(AccumulationBlend, StaticViewConverges) {
                   look({0, 0.6f, 3}, {0, 0, 0}), antialias_width, antialias_height);
   protocol::Settings settings;
   settings.accumulation.max_samples = 512;
+  settings.accumulation.by_noise = false;
   settings.accumulation.blend_samples = 16;
   rig.apply(settings);
   const auto change_after = [&](std::uint32_t samples) {

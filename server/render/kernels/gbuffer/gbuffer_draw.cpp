@@ -279,7 +279,7 @@ void gbuffer_draw(const GBufferDrawJob& job) {
   constexpr int size = triangle_tile;
   const int across = (job.width + size - 1) / size, down = (job.height + size - 1) / size;
   for_each_range(across * down, 1, [&](int first, int last) {
-    for (int i = first; i < last; ++i) {
+    for (int i = first; i < last && !job.plan.is_canceled(); ++i) {
       HWY_DYNAMIC_DISPATCH(draw_tile)(job, i % across * size, i / across * size);
     }
   });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gpu/frame_plan/frame_plan.hpp"
 #include "render/kernels/blend/blended.hpp"
 #include "render/kernels/gbuffer/gbuffer_triangles.hpp"
 #include "render/resources/host_tables.hpp"
@@ -33,6 +34,7 @@ struct GBufferDrawJob : FrameJob<GBufferDrawBindings> {
   std::uint32_t rounds;          // the surface of the last is taken as it is
   std::uint32_t blended_rounds;  // in which blended surfaces are laid over; fewer
   const LitScene* blended;       // null: they are passed only
+  const gpu::FramePlan& plan;    // no tiles are drawn once its frame is canceled
 };
 
 /// Finds the nearest triangle of every pixel and stores what its surface is, tile by tile on all

@@ -58,10 +58,14 @@ class Presentation {
   }
 
   HWY_INLINE Triple<V> radiance(int x, int y) const {
-    if (job_.constants.mean_weight >= 1.0f) return load(job_.accumulated, x, y);
+    const V weight = hn::LoadU(d_, row_of<const float>(job_.mean_weight, y) + x);
+    const auto none = hn::Le(weight, hn::Zero(d_)), all = hn::Ge(weight, set(1.0f));
+    if (hn::AllTrue(d_, all)) return load(job_.accumulated, x, y);
     const Triple<V> frame = nearest(x, y);
-    if (job_.constants.mean_weight <= 0.0f) return frame;
-    return mix(frame, load(job_.accumulated, x, y), set(job_.constants.mean_weight));
+    if (hn::AllTrue(d_, none)) return frame;
+    // What has no weight may be no number.
+    const Triple<V> mean = load(job_.accumulated, x, y);
+    return select(all, mean, select(none, frame, mix(frame, mean, weight)));
   }
 
   HWY_INLINE Triple<V> tone_map(const Triple<V>& color) const {

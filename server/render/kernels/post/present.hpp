@@ -9,13 +9,13 @@ namespace heliograph::render::kernels {
 template <class Stage>
 struct PresentBindings {
   gpu::Read<Stage> radiance, accumulated;  // rgba32f
+  gpu::Read<Stage> mean_weight;            // r32f: of `accumulated`, 0..1
   gpu::ReadBuffer<Stage, shared::ExposureState> exposure;
   gpu::Write<Stage> output;  // rgba8
 };
 struct PresentConstants {
-  glm::uvec2 shown;   // size of the frame that is shown, pixels
-  glm::uvec2 drawn;   // that of `radiance`, whose nearest pixels are shown
-  float mean_weight;  // of the accumulated mean in the image that is shown, 0..1
+  glm::uvec2 shown;  // size of the frame that is shown, pixels
+  glm::uvec2 drawn;  // that of `radiance`, whose nearest pixels are shown
 };
 using PresentJob = FrameJob<PresentBindings, PresentConstants>;
 

@@ -32,8 +32,12 @@ inline shared::TemporalConstants temporal_constants(const FrameInputs& in,
   const float by_time =
       in.clock.seconds > 0.0f ? settings.history_seconds / in.clock.seconds : 0.0f;
   shared::TemporalConstants constants{};
-  constants.frames =
-      std::max({static_cast<float>(settings.history_frames), by_time, static_frames});
+  const float carried = std::max(static_cast<float>(settings.history_frames), by_time);
+  constants.frames = std::max(carried, static_frames);
+  // What frames of fewer pixels have left counts as so many samples, or it would blur for long.
+  if (in.clock.samples > 0 && in.clock.carried_share < 1.0f) {
+    constants.frames = in.clock.carried_share * carried + static_frames;
+  }
   constants.moments_frames = std::max(static_cast<float>(settings.moments_frames), static_frames);
   constants.rectification = static_cast<std::uint32_t>(settings.rectification);
   constants.radius = settings.rectification_radius;

@@ -70,13 +70,13 @@ GBuffer draw_gbuffer(gpu::FramePlan& plan, const FrameInputs& in, const BlendedI
            .blended_surface = given(blends, to.surface),
            .blended_specular = given(blends, to.specular),
            .blended_chosen = given(blends, to.chosen)})
-      .host([in, triangles, blends](const kernels::GBufferDrawJob::Pass& pass) {
+      .host([in, triangles, blends, &plan](const kernels::GBufferDrawJob::Pass& pass) {
         const auto lights = frame_lights(in.tables.lights, in.constants);
         const kernels::LitScene lit = lit_scene(in, lights);
         kernels::gbuffer_draw({pass, in.constants, lit.scene,
                                (in.scene.features & shared::scene_deforms) != 0, *triangles,
                                std::max(camera_rounds(in), least_layers), most_blended,
-                               blends ? &lit : nullptr});
+                               blends ? &lit : nullptr, plan});
       });
   return gbuffer;
 }

@@ -18,17 +18,15 @@ inline constexpr struct AccumulateBuffers {
                          .colors = ViewColors::radiance,
                          .description =
                              "The mean of all samples since the view last changed: "
-                             "linear radiance.",
+                             "linear radiance; variance of a single sample's luminance (w).",
                          .aspects = accumulate_mean_aspects};
 } accumulate_buffers{};
 
-/// The mean of every frame's `sample` since the view last changed: linear radiance.
+/// The mean of every frame's `sample` since the view last changed: linear radiance, and in w the
+/// variance of their luminance (Welford 1962).
 gpu::History accumulate(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef sample);
 
-/// The weight of the mean in the image that this frame shows, 0..1. While the view moves, the
-/// denoised frame is shown; the longer the view is static, the more the mean, which converges to
-/// the ground truth. `accumulation.blend_samples` samples after the first both weigh the same. 0 in
-/// frames that are drawn smaller than they are shown, as the mean is.
-float mean_weight(const FrameInputs& in);
+/// How many samples that is, with this frame's.
+std::uint32_t samples_of_mean(const FrameInputs& in);
 
 }  // namespace heliograph::render

@@ -5,7 +5,7 @@
 
 #include "render/kernels/post/exposure.hpp"
 #include "render/passes/frame_inputs.hpp"
-#include "render/passes/post/accumulate.hpp"
+#include "render/passes/post/mean_weight.hpp"
 #include "shaders/embedded.hpp"
 #include "shaders/shared/exposure.h"
 
@@ -21,7 +21,7 @@ void meter(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef hdr, gpu::
       .host(kernels::exposure_begin);
   plan.pass("exposure.meter", in.program(shaders::exposure_meter))
       .bind<kernels::ExposureMeterBindings>({.hdr = hdr, .mean = mean, .histogram = histogram})
-      .constants([in] { return kernels::ExposureMeterConstants{mean_weight(in)}; })
+      .constants([in] { return kernels::ExposureMeterConstants{mean_share(in)}; })
       .dispatch(gpu::FrameSize::squares(2))
       .host(kernels::exposure_meter);
 }

@@ -13,9 +13,9 @@ struct Exposure {
   gpu::BufferRef report;
 };
 
-/// Manual exposure is `exposure.compensation` alone. Automatic exposure meters the image as
-/// present() will show it and approaches its target exponentially, from the exposure of the frame
-/// before; a frame without history starts at its target.
+/// Manual exposure is `exposure.compensation` alone. Automatic exposure meters the frame and the
+/// mean, blended by mean_share(), and approaches its target exponentially, from the exposure of the
+/// frame before; a frame without history starts at its target.
 Exposure expose(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef hdr, gpu::ImageRef mean);
 
 /// Whether automatic exposure has reached its target in the frame that ran last, within a hundredth

@@ -2,21 +2,22 @@
 
 #include "render/kernels/post/present.hpp"
 #include "render/passes/frame_inputs.hpp"
-#include "render/passes/post/accumulate.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
 
 gpu::ImageRef present(gpu::FramePlan& plan, const FrameInputs& in, const Exposure& exposure,
-                      gpu::ImageRef radiance, gpu::ImageRef mean) {
+                      gpu::ImageRef radiance, gpu::ImageRef mean, gpu::ImageRef mean_weight) {
   const auto output =
       plan.image(present_buffers.output.name, VK_FORMAT_R8G8B8A8_UNORM, 0, in.shown);
   plan.pass("present", in.program(shaders::present))
-      .bind<kernels::PresentBindings>(
-          {.radiance = radiance, .accumulated = mean, .exposure = exposure.state, .output = output})
+      .bind<kernels::PresentBindings>({.radiance = radiance,
+                                       .accumulated = mean,
+                                       .mean_weight = mean_weight,
+                                       .exposure = exposure.state,
+                                       .output = output})
       .constants([in, &plan, radiance] {
-        return kernels::PresentConstants{size_of(in.shown), size_of(plan.drawn(radiance)),
-                                         mean_weight(in)};
+        return kernels::PresentConstants{size_of(in.shown), size_of(plan.drawn(radiance))};
       })
       .dispatch(in.shown)
       .host(kernels::present, in.constants);

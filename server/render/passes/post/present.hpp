@@ -12,9 +12,9 @@ inline constexpr struct PresentBuffers {
                              "The finished frame before exposure and tone mapping: linear."};
 } present_buffers{};
 
-/// The frame and the mean of its samples by mean_weight(), exposure, tone map, sRGB: RGBA8 for
-/// encoders (paper section 3, stage 9).
+/// The frame and the mean of its samples by the weights of weigh_mean(), exposure, tone map, sRGB:
+/// RGBA8 for encoders (paper section 3, stage 9).
 gpu::ImageRef present(gpu::FramePlan& plan, const FrameInputs& in, const Exposure& exposure,
-                      gpu::ImageRef radiance, gpu::ImageRef mean);
+                      gpu::ImageRef radiance, gpu::ImageRef mean, gpu::ImageRef mean_weight);
 
 }  // namespace heliograph::render

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "render/kernels/common/frame_job.hpp"
+#include "shaders/shared/exposure.h"
+
+namespace heliograph::render::kernels {
+
+/// shaders/post/mean_weight.comp
+template <class Stage>
+struct MeanWeightBindings {
+  gpu::Read<Stage> radiance, mean;  // rgba32f; a of the mean: variance of one sample's luminance
+  gpu::ReadBuffer<Stage, shared::ExposureState> exposure;
+  gpu::Write<Stage> weight;  // r32f
+};
+struct MeanWeightConstants {
+  glm::uvec2 shown;      // size of all images, pixels
+  float share;           // the weight of every pixel, where it does not follow from noise
+  float variance_scale;  // of one sample's variance to the mean's; 0: `share` is the weight
+};
+using MeanWeightJob = gpu::HostPass<MeanWeightBindings, MeanWeightConstants>;
+
+/// The weight of the mean in the frame that is shown, on all processors, in the widest vectors that
+/// they have.
+void mean_weight(const MeanWeightJob& job);
+
+}  // namespace heliograph::render::kernels
