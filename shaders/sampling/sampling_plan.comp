@@ -12,7 +12,7 @@ layout(set = 1, binding = 1, rgba8) readonly uniform image2D surface;
 layout(set = 1, binding = 2, rgba16f) readonly uniform image2D visibility_length;  // one frame ago
 layout(set = 1, binding = 3, rgba16f) readonly uniform image2D specular_length;    // one frame ago
 layout(set = 1, binding = 4, rgba16f) readonly uniform image2D specular_distance;  // w, one frame ago
-layout(set = 1, binding = 5, rgba16) readonly uniform image2D visibility;         // one frame ago
+layout(set = 1, binding = 5, rgba16) readonly uniform image2D visibility;  // one frame ago
 layout(set = 1, binding = 6, r32ui) writeonly uniform uimage2D planned;
 layout(push_constant) uniform Constants { SamplingPlanConstants constants; };
 

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <glm/gtc/packing.hpp>
+
 #include "render/kernels/specular.hpp"
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
 #include "render/passes/reflections/trace_specular.hpp"

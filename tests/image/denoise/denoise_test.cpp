@@ -31,6 +31,7 @@ TEST(StaticView, FlickerDecreasesAndConvergesToGroundTruth) {
 TEST(StaticView, ConvergesToConstantImage) {
   protocol::Settings settings;
   settings.accumulation.max_samples = 4096;
+  settings.accumulation.by_noise = false;
   SpheresRig rig(settings);
   render::Frame before, now;
   const auto change_after = [&](std::uint32_t samples) {
@@ -44,6 +45,25 @@ TEST(StaticView, ConvergesToConstantImage) {
   EXPECT_LT(late.mean, 0.5 * middle);
   EXPECT_LT(late.mean, 0.035) << "code values of 255";
   EXPECT_LE(late.maximum, 2.0);
+}
+
+// Where noise decides how much of the mean is shown, its share changes a little, too.
+TEST(StaticView, ChangesLessWhereNoiseDecides) {
+  const auto changes = [](bool by_noise) {
+    protocol::Settings settings;
+    settings.accumulation.max_samples = 4096;
+    settings.accumulation.by_noise = by_noise;
+    SpheresRig rig(settings);
+    std::vector<double> means;
+    for (const std::uint32_t samples : {4u, 32u, 96u, 288u}) {
+      const render::Frame before = rig.accumulate(samples);
+      means.push_back(difference(before, rig.renderer.render()).mean);
+    }
+    return means;
+  };
+  const std::vector<double> by_count = changes(false), by_noise = changes(true);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_LT(by_noise[i], by_count[i]) << i;
+  EXPECT_LT(by_noise[3], 0.035) << "code values of 255";
 }
 
 TEST(StaticView, DenoisingPreservesMeanLuminance) {

@@ -109,5 +109,49 @@ INSTANTIATE_TEST_SUITE_P(Events, SampledByNeed,
                          testing::Values(Event::light_off, Event::light_on, Event::sky_dims),
                          [](const auto& event) { return std::string(name_of(event.param)); });
 
+/// The spheres and their floor, without anything smooth.
+std::shared_ptr<const scene::Scene> rough_spheres() {
+  auto rough = std::make_shared<scene::Scene>(*spheres_on_floor());
+  for (shared::Material& material : rough->materials) {
+    material.roughness = 0.7f;
+    material.metallic = 0.0f;
+  }
+  return rough;
+}
+
+/// Mean differences from each frame to the next, from the last one of a moving camera on.
+std::vector<double> changes_at_rest(const protocol::Settings& settings) {
+  SpheresRig rig(rough_spheres(), settings);
+  rig.renderer.set_frame_seconds(1.0f / 30.0f);
+  render::Frame before;
+  for (int i = 0; i < frames_before; ++i) {
+    rig.renderer.set_camera(slow_orbit(i));
+    before = rig.renderer.render();
+  }
+  std::vector<double> changes;
+  for (int i = 0; i < 24; ++i) {
+    const render::Frame now = rig.renderer.render();
+    changes.push_back(difference(before, now).mean);
+    before = now;
+  }
+  return changes;
+}
+
+TEST(FadedReflections, LeadSmoothlyToTracedOnesWhenTheViewStops) {
+  protocol::Settings settings = denoised_only();
+  settings.sampling.specular = false;
+  const std::vector<double> traced = changes_at_rest(settings);
+  settings.sampling.specular = true;
+  settings.specular.fade_fraction = 1.0f;
+  for (const auto to :
+       {protocol::FadedReflection::history, protocol::FadedReflection::environment}) {
+    settings.specular.fade_to = to;
+    const std::vector<double> faded = changes_at_rest(settings);
+    for (std::size_t i = 0; i < faded.size(); ++i) {
+      EXPECT_LT(faded[i], 1.5 * traced[i] + 0.3) << i << " to " << static_cast<int>(to);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace heliograph::test

@@ -66,13 +66,25 @@ tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
   return in.settings.specular.sort_rays ? sort_rays(plan, in, "specular", rays) : rays;
 }
 
+/// Shadows of the frame before, or an image that nothing is read from.
+struct ShownBefore {
+  gpu::ImageRef visibility;
+  bool known;
+};
+
+ShownBefore shown_before(gpu::FramePlan& plan, const std::string& name,
+                         std::optional<gpu::ImageRef> visibility) {
+  if (visibility) return {*visibility, true};
+  return {plan.image(name + ".shown_before", formats::four_fractions, 0, {1, 1}), false};
+}
+
 /// What the rays hit, the shadow rays from there, and where others are known from.
 struct Hits {
   std::string name;
   tracing::RayStream rays;
   gpu::BufferRef hits;
   tracing::RayStream shadows;
-  std::optional<gpu::ImageRef> visibility;  // one frame ago
+  ShownBefore before;
 };
 
 /// Shades the hits; makes the shadow rays toward their lights.
@@ -80,20 +92,17 @@ void shade(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer, 
            const Target& target) {
   const std::uint32_t features = in.scene.features;
   begin_rays(plan, in, hits.name + ".shadows", hits.shadows);
-  const gpu::ImageRef nothing_shown =
-      plan.image(hits.name + ".nothing_shown", formats::four_fractions, 0, {1, 1});
   plan.pass(hits.name + ".shade", in.program(shaders::specular_shade, features))
-      .bind<kernels::SpecularShadeBindings>(
-          {.surface = gbuffer.surface,
-           .motion = gbuffer.motion,
-           .rays = ray_source(hits.rays),
-           .hits = hits.hits,
-           .shadows = ray_sink(hits.shadows),
-           .radiance = target.radiance,
-           .previous_motion = gbuffer.previous_motion,
-           .previous_instance = gbuffer.previous_instance,
-           .visibility = hits.visibility.value_or(nothing_shown)})
-      .constants([in, scale = target.scale, known = hits.visibility.has_value()] {
+      .bind<kernels::SpecularShadeBindings>({.surface = gbuffer.surface,
+                                             .motion = gbuffer.motion,
+                                             .rays = ray_source(hits.rays),
+                                             .hits = hits.hits,
+                                             .shadows = ray_sink(hits.shadows),
+                                             .radiance = target.radiance,
+                                             .previous_motion = gbuffer.previous_motion,
+                                             .previous_instance = gbuffer.previous_instance,
+                                             .visibility = hits.before.visibility})
+      .constants([in, scale = target.scale, known = hits.before.known] {
         const auto& s = in.settings.specular;
         return kernels::SpecularShadeConstants{
             s.hit_shading == protocol::HitShading::traced, scale,
@@ -127,13 +136,13 @@ void resolve_lights(gpu::FramePlan& plan, const FrameInputs& in, const std::stri
 
 void trace_and_shade(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
                      const tracing::RayStream& rays, const GBuffer& gbuffer, const Target& target,
-                     std::optional<gpu::ImageRef> visibility = {}) {
+                     const ShownBefore& before) {
   const auto hits = plan.buffer(name + ".hits", sizeof(shared::Hit) * rays.capacity, storage,
                                 gpu::Memory::device);
   in.tracer.trace_closest(plan, name + ".trace", in.structure, rays, hits);
   const auto shadows =
       declare_rays(plan, name + ".shadows", rays.capacity, tracing::RayKind::hit_shadow);
-  shade(plan, in, gbuffer, {name, rays, hits, shadows, visibility}, target);
+  shade(plan, in, gbuffer, {name, rays, hits, shadows, before}, target);
   resolve_lights(plan, in, name, shadows, target);
 }
 
@@ -161,9 +170,10 @@ gpu::ImageRef trace_specular(gpu::FramePlan& plan, const FrameInputs& in, const 
                              std::optional<gpu::ImageRef> visibility) {
   const Target target = make_target(plan, in.settings.specular.half_resolution);
   if (target.directions) planned.reset();
+  const ShownBefore before = shown_before(plan, "specular", visibility);
   for (const kernels::Rows rows : ray_strips(plan, target.size.of(plan.extent()))) {
     const auto rays = generate_rays(plan, in, gbuffer, target, rows, planned);
-    trace_and_shade(plan, in, "specular", rays, gbuffer, target, visibility);
+    trace_and_shade(plan, in, "specular", rays, gbuffer, target, before);
   }
   return target.directions ? upsample(plan, in, gbuffer, target) : target.radiance;
 }
@@ -174,7 +184,8 @@ void trace_reflections(gpu::FramePlan& plan, const FrameInputs& in, const std::s
   GBuffer reflecting = behind;
   reflecting.surface = surface;
   reflecting.motion = distance;
-  trace_and_shade(plan, in, name, rays, reflecting, {radiance, {}, gpu::each_pixel(), 1});
+  trace_and_shade(plan, in, name, rays, reflecting, {radiance, {}, gpu::each_pixel(), 1},
+                  shown_before(plan, name, {}));
 }
 
 void add_unoccluded_light(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
