@@ -43,9 +43,9 @@ struct SamplingPlanConstants {
   float full_frames;     // shorter histories are sampled in every frame
   uint visibility_most;  // longer ones once in so many frames
   uint specular_most;
-  uint mirrors_most;  // of reflections on smooth or metallic surfaces
-  float fade_start;   // roughness above which a growing fraction of pixels traces no reflection
-  float fade_slope;   // fraction for each step of roughness
+  uint mirrors_most;    // of reflections on smooth or metallic surfaces
+  float fade_start;     // roughness above which a growing fraction of pixels traces no reflection
+  float fade_slope;     // fraction for each step of roughness
   float fade_fraction;  // the most
   uint faded;           // what their words hold instead of plan_specular
 };
