@@ -138,6 +138,7 @@ TEST(Presets, SvgfIsThePapersBaseline) {
     "specular_blur": {"kernel": "full", "feedback": 0, "jitter": false, "lobe_limit": false,
                       "iterations_by_roughness": false, "iterations": 4, "luminance_sigma": 4.0,
                       "moving_sigma": 4.0},
+    "accumulation": {"by_noise": false},
     "sampling": {"visibility": false, "specular": false}})"));
 }
 
