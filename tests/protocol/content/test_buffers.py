@@ -148,7 +148,7 @@ class TheListFollows(Sessions, ServerTestCase):
 
     def test_a_preset(self):
         self.own("preset")
-        of_svgf = ["visibility.temporal", "visibility.blur.odd"]
+        of_svgf = ["visibility.blur.odd"]
         self.assert_complete("preset", ["visibility.blur.even"], of_svgf)
         self.server.call("settings.preset", {"name": "svgf"}, session="preset")
         self.assert_complete("preset", of_svgf)

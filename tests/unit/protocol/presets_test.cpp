@@ -65,10 +65,12 @@ bool is_of_the_denoiser(const SettingDescriptor& setting) {
   static const std::set<std::string_view> groups{"reprojection",  "shadow_temporal",
                                                  "shadow_blur",   "specular_temporal",
                                                  "specular_blur", "reinhard"};
-  static const std::set<std::string_view> paths{"specular.enabled",       "specular.hit_shading",
-                                                "specular.max_roughness", "sampling.visibility",
-                                                "sampling.specular",      "sampling.full_frames",
-                                                "sampling.floor",         "antialiasing.temporal"};
+  static const std::set<std::string_view> paths{
+      "specular.enabled",      "specular.hit_shading",   "specular.max_roughness",
+      "specular.fade_start",   "specular.fade_end",      "specular.fade_fraction",
+      "specular.fade_to",      "specular.reuse_shadows", "sampling.visibility",
+      "sampling.specular",     "sampling.full_frames",   "sampling.floor",
+      "accumulation.by_noise", "antialiasing.temporal"};
   return groups.contains(setting.group) || paths.contains(setting.path);
 }
 
