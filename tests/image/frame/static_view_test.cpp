@@ -85,6 +85,31 @@ TEST(StaticView, NoiseDecidesBetterThanTheNumberOfSamples) {
 }
 
 // Frames that were drawn smaller leave histories of fewer and larger pixels behind.
+// What frames of a quarter of the pixels leave behind counts as a quarter of the samples.
+TEST(StaticView, CountsReducedFramesByTheirPixels) {
+  const auto history_length_after_motion_at = [](float scale) {
+    RendererRig rig = make_view();
+    protocol::Settings settings;
+    settings.sampling.visibility = false;  // every frame counts
+    rig.apply(settings);
+    rig.renderer.set_draw_scale(scale);
+    for (int i = 0; i < 48; ++i) {
+      rig.renderer.set_camera(look({0.5f + 0.01f * float(i % 2), 2, 4.5f}, {0, 0.5f, 0}));
+      rig.renderer.render();
+    }
+    rig.renderer.set_draw_scale(1.0f);
+    rig.accumulate(3);
+    const render::FloatImage length = rig.capture("visibility.history_length");
+    double sum = 0.0;
+    for (std::size_t i = 0; i < length.rgba.size(); i += 4) sum += length.rgba[i];
+    return sum / static_cast<double>(length.rgba.size() / 4);
+  };
+  const double reduced = history_length_after_motion_at(0.5f);
+  const double full = history_length_after_motion_at(1.0f);
+  EXPECT_LT(reduced, 0.5 * full) << full;
+  EXPECT_GT(reduced, 0.2 * full) << full;
+}
+
 TEST(StaticView, ForgetsReducedFramesSoon) {
   const render::Frame truth = true_view();
   const auto similarity_after_motion_at = [&](float scale) {
