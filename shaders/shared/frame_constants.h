@@ -13,6 +13,7 @@ SHARED_CONSTANT uint frame_environment_specular = 16u;
 SHARED_CONSTANT uint frame_emissive = 32u;
 SHARED_CONSTANT uint frame_environment_visible = 64u;
 SHARED_CONSTANT uint frame_orthographic = 128u;
+SHARED_CONSTANT uint frame_indirect = 256u;  // indirect diffuse light in place of ambient occlusion
 
 struct FrameConstants {
   mat4 view_projection;      // world -> clip, with this sample's jitter
