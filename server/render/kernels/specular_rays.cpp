@@ -129,8 +129,8 @@ class Generation {
   }
 
   static HWY_INLINE Float specular_occlusion(Float n_dot_v, Float visibility, Float roughness) {
-    const Float octaves = hn::MulAdd(roughness * roughness, number(-16.0f), number(-1.0f));
-    const Float power = hn::Exp(tag, octaves * number(std::numbers::ln2_v<float>));
+    const Float exponent = hn::MulAdd(roughness * roughness, number(-16.0f), number(-1.0f));
+    const Float power = hn::Exp(tag, exponent * number(std::numbers::ln2_v<float>));
     const Float raised = hn::Exp(tag, hn::Log(tag, n_dot_v + visibility) * power);
     return clamped(raised - one() + visibility, 0.0f, 1.0f);
   }
