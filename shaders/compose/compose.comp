@@ -9,5 +9,5 @@ layout(set = 1, binding = 11, rgba32f) writeonly uniform image2D hdr;
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel)) return;
-  imageStore(hdr, pixel, composed_of_raw_signals(pixel_composition(pixel), pixel));
+  imageStore(hdr, pixel, composed_of_raw_signals(pixel_composition(pixel), pixel, vec3(0.0)));
 }

@@ -18,5 +18,5 @@ void main() {
   vec3 mirrored = max_roughness < 0.0 ? vec3(0.0) : imageLoad(denoised_specular, pixel).rgb;
   vec3 around = enabled(frame_indirect) ? imageLoad(denoised_indirect, pixel).rgb : vec3(0.0);
   imageStore(hdr, pixel, composed(shares, visibility, mirrored, around));
-  imageStore(hdr_raw, pixel, composed_of_raw_signals(shares, pixel));
+  imageStore(hdr_raw, pixel, composed_of_raw_signals(shares, pixel, around));
 }

@@ -35,6 +35,15 @@ vec2 cell_pair(uint check, uint which) {
   return vec2(hashed.xy >> 8u) * exp2(-24.0);
 }
 
+/// Whether the cell is one of those that are updated. All cells are counted for the next frame.
+bool is_due(RadianceCell cell, uint check) {
+  atomicAdd(cache_keys[cache_counts + constants.frame_number % 2u], 1u);
+  uint before = cache_keys[cache_counts + (constants.frame_number + 1u) % 2u];
+  float probability = constants.updates / float(max(before, 1u));
+  if (cell.samples < cache_new_samples) probability *= cache_new_factor;
+  return cell_number(check, 0u) < probability;
+}
+
 void main() {
   uint slot = gl_GlobalInvocationID.x;
   bool gathers = false, lit = false;
@@ -43,10 +52,10 @@ void main() {
   uint check = cache_keys[slot];
   if (check != 0u) {
     RadianceCell cell = cells[slot];
-    cells[slot].updated = 0u;
+    cells[slot].updated = cells[slot].priority = 0u;
     if (constants.frame_number - cell.last_used > constants.lifetime) {
       cache_keys[slot] = 0u;
-    } else if (cell.samples < 4u || cell_number(check, 0u) < constants.update_probability) {
+    } else if (is_due(cell, check)) {
       gathers = true;
       cells[slot].updated = 1u;
       cells[slot].new_direct = cells[slot].new_indirect = vec3(0.0);

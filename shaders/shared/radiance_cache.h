@@ -8,6 +8,14 @@ SHARED_BEGIN
 // Cells lie in buckets, in any of whose slots a cell may be. Key 0: the slot is free.
 SHARED_CONSTANT uint cache_cells = 65536u;
 SHARED_CONSTANT uint cache_bucket = 8u;
+// Behind the keys: how many cells there are, counted in frames of even and of odd numbers.
+SHARED_CONSTANT uint cache_counts = cache_cells;
+SHARED_CONSTANT uint cache_words = cache_cells + 2u;
+// Cells of fewer samples are updated so much more often.
+SHARED_CONSTANT uint cache_new_samples = 4u;
+SHARED_CONSTANT float cache_new_factor = 8.0f;
+// One of so many rays moves the cell that it asks for.
+SHARED_CONSTANT uint moves_every = 8u;
 
 struct RadianceCell {
   vec3 position;   // of a surface in the cell, world
@@ -15,7 +23,7 @@ struct RadianceCell {
   vec3 normal;     // of that surface, geometric
   uint samples;    // in the means; 0: nothing is known
   vec3 direct;     // irradiance / pi by lights
-  float padding0;
+  uint priority;   // random, of the place that it has been moved to in this frame
   vec3 indirect;   // and by everything else
   float padding1;
   vec3 new_direct;  // this frame's sample
@@ -31,8 +39,8 @@ struct RadianceCacheConstants {
   float least_size;  // metres
   uint most_samples;  // in a mean
   uint lifetime;      // frames without use
-  float update_probability;
-  uint padding0;
+  float updates;      // cells in each frame, about
+  float cell_fraction;  // largest size as a fraction of the length of the ray that asks
 };
 
 SHARED_END

@@ -77,8 +77,13 @@ class Composition {
     const V shadow = load_one(job_.shadows, x, y), ambient = load_one(job_.ambient, x, y);
     const bool reflects = job_.constants.max_roughness >= 0.0f;
     const bool gathers = enabled(shared::frame_indirect);
-    const Signals noisy{shadow, ambient, reflects ? color(job_.specular, x, y) : black(),
-                        gathers ? color(job_.indirect, x, y) : black()};
+    Signals noisy{shadow, ambient, reflects ? color(job_.specular, x, y) : black(), black()};
+    M sampled = hn::Eq(hn::Zero(d_), hn::Zero(d_));
+    if (gathers) {
+      const Quad<V> indirect = load(job_.indirect, x, y);
+      noisy.indirect = {indirect.x, indirect.y, indirect.z};
+      sampled = hn::Ge(indirect.w, hn::Zero(d_));
+    }
     if (!job_.denoised_visibility) {
       store(terms, noisy, job_.hdr, x, y);
       return;
@@ -88,6 +93,7 @@ class Composition {
                            reflects ? color(job_.denoised_specular, x, y) : black(),
                            gathers ? color(job_.denoised_indirect, x, y) : black()};
     store(terms, denoised, job_.hdr, x, y);
+    noisy.indirect = select(sampled, noisy.indirect, denoised.indirect);
     store(terms, noisy, job_.hdr_noisy, x, y);
   }
 

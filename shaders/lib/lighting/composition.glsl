@@ -80,11 +80,13 @@ vec4 composed(Composition terms, vec2 visibility, vec3 specular, vec3 indirect) 
   return vec4(radiance, 1.0);
 }
 
-vec4 composed_of_raw_signals(Composition terms, ivec2 pixel) {
+/// `smooth_indirect`: where there is no sample.
+vec4 composed_of_raw_signals(Composition terms, ivec2 pixel, vec3 smooth_indirect) {
   vec2 visibility =
       vec2(imageLoad(shadow_visibility, pixel).r, imageLoad(ambient_visibility, pixel).r);
   vec3 specular = max_roughness < 0.0 ? vec3(0.0) : imageLoad(specular_radiance, pixel).rgb;
-  vec3 indirect = enabled(frame_indirect) ? imageLoad(indirect_radiance, pixel).rgb : vec3(0.0);
+  vec4 sampled = enabled(frame_indirect) ? imageLoad(indirect_radiance, pixel) : vec4(0.0);
+  vec3 indirect = sampled.w < 0.0 ? smooth_indirect : sampled.rgb;
   return composed(terms, visibility, specular, indirect);
 }
 

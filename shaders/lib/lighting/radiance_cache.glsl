@@ -8,7 +8,6 @@
 #include "lib/math/random.glsl"
 #include "shared/radiance_cache.h"
 
-const uint moves_every = 4u;
 const uint no_cell = 0xffffffffu;
 
 struct CellKey {
@@ -16,9 +15,10 @@ struct CellKey {
   uint check;
 };
 
-/// Edge length of cells at `position`: a power of two.
-float cell_size(vec3 position, RadianceCacheConstants c) {
-  float size = max(distance(position, frame.eye.xyz) * c.cell_angle, c.least_size);
+/// Edge length of cells at `position`: a power of two. A short ray sees little of a large cell.
+float cell_size(vec3 position, float t, RadianceCacheConstants c) {
+  float size = min(distance(position, frame.eye.xyz) * c.cell_angle, t * c.cell_fraction);
+  size = max(size, c.least_size);
   return exp2(ceil(log2(size)));
 }
 
@@ -45,8 +45,8 @@ uint find_cell(CellKey key) {
   return no_cell;
 }
 
-/// Finds a cell or makes it, if there is a free slot. Which place of a cell is updated changes from
-/// time to time, so that its mean is that of all places in it that are asked for.
+/// Finds a cell or makes it, if there is a free slot. Which place of a cell is updated changes: a
+/// random one of those that are asked for, so that its mean is theirs.
 uint touch_cell(vec3 position, vec3 normal, float size, uint frame_number) {
   CellKey key = cell_key(position, normal, size);
   uint slot = find_cell(key);
@@ -64,7 +64,7 @@ uint touch_cell(vec3 position, vec3 normal, float size, uint frame_number) {
   if (slot == no_cell) return slot;
   cells[slot].last_used = frame_number;
   uvec3 random = pcg3d(floatBitsToUint(position) + frame_number);
-  if (random.x % moves_every == 0u) {
+  if (random.x % moves_every == 0u && atomicMax(cells[slot].priority, random.y) < random.y) {
     cells[slot].position = position;
     cells[slot].normal = normal;
   }
@@ -78,8 +78,9 @@ struct CachedLight {
   bool known;
 };
 
-CachedLight cached_light(vec3 position, vec3 normal, RadianceCacheConstants c) {
-  float size = cell_size(position, c);
+/// `t`: length of the ray that asks, metres.
+CachedLight cached_light(vec3 position, vec3 normal, float t, RadianceCacheConstants c) {
+  float size = cell_size(position, t, c);
   for (uint i = 0u; i < 2u; ++i) {
     uint slot = touch_cell(position, normal, size, c.frame_number);
     if (slot != no_cell && cells[slot].samples > 0u) {

@@ -45,21 +45,21 @@ vec3 open_light(SurfaceMaterial m) {
 }
 
 /// Light that comes from no light source.
-vec3 surrounding_light(HitSurface s, SurfaceMaterial m) {
+vec3 surrounding_light(HitSurface s, SurfaceMaterial m, float t) {
 #ifdef READS_RADIANCE_CACHE
-  CachedLight cached = cached_light(s.position, s.geometric, cache);
+  CachedLight cached = cached_light(s.position, s.geometric, t, cache);
   if (cached.known) return reflected_light(m, cached.indirect);
 #endif
   return open_light(m);
 }
 
 /// What of a hit's light needs no ray.
-vec3 steady_light(HitSurface s, SurfaceMaterial m) {
+vec3 steady_light(HitSurface s, SurfaceMaterial m, float t) {
   vec3 light = vec3(0.0);
   if ((s.flags & material_unlit) != 0u) {
     light = s.base_color;
   } else {
-    light = surrounding_light(s, m);
+    light = surrounding_light(s, m, t);
   }
   if (enabled(frame_emissive)) light += s.emissive;
   return light;
@@ -123,7 +123,7 @@ void main() {
       HitSurface s = hit_surface(hit, ray.direction, cone_width(cone, hit.t));
       SurfaceMaterial m = material_of(s, ray.direction);
       if (scene_has(scene_blends)) weight *= stopped_weight(s);
-      light = steady_light(s, m);
+      light = steady_light(s, m, hit.t);
       if (with_lights != 0u && enabled(frame_direct) && (s.flags & material_unlit) == 0u) {
         float shown = shown_shadows(hit.instance, s.position, s.geometric);
         if (shown >= 0.0) {

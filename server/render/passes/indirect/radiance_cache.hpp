@@ -1,6 +1,7 @@
 #pragma once
 
 #include "render/passes/frame_inputs.hpp"
+#include "render/resources/host_tables.hpp"
 #include "shaders/shared/radiance_cache.h"
 
 namespace heliograph::render {
@@ -12,6 +13,9 @@ struct RadianceCache {
 };
 
 shared::RadianceCacheConstants cache_constants(const FrameInputs& in);
+
+/// The environment that lights this frame, for host kernels.
+const kernels::Environment& host_environment(const FrameInputs& in);
 
 /// Updates some of the cells that earlier frames have asked for: one light with a shadow ray, and
 /// one ray that gathers what other cells know.

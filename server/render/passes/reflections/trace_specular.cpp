@@ -124,8 +124,7 @@ void shade(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer, 
                                  kernels::view_scene(in.scene, in.tables, in.moving),
                                  *in.moving.environment().view(separate_sun).maps.host, lights,
                                  in.lobe_tables()});
-      })
-      .host_when(!hits.cache);
+      });
 }
 
 /// Adds the light of shadow rays that are not occluded.
