@@ -58,7 +58,7 @@ Reprojected reproject_and_plan(gpu::FramePlan& plan, const FrameInputs& in,
 /// Whether a frame traces shadows or ambient occlusion.
 auto traces_visibility(const FrameInputs& in) {
   return [&frame = in.constants] {
-    return (frame.flags & (shared::frame_shadows | shared::frame_ambient_occlusion)) != 0;
+    return (frame.flags & shared::frame_shadows) != 0 || shared::traces_ambient(frame.flags);
   };
 }
 

@@ -192,7 +192,7 @@ class Composition {
                         int y) const {
     const V one = set(1.0f);
     const V lit = enabled(shared::frame_shadows) ? signals.shadow : one;
-    const V open = enabled(shared::frame_ambient_occlusion) ? signals.ambient : one;
+    const V open = shared::traces_ambient(job_.frame.flags) ? signals.ambient : one;
     Triple<V> radiance = terms.own + terms.direct * lit + terms.ambient * open +
                          terms.specular * signals.specular + terms.indirect * signals.indirect;
     // One bad pixel must not spread through the history.

@@ -103,7 +103,7 @@ class Generation {
   }
 
   HWY_INLINE Float ambient_before(Integer word) const {
-    if (!(frame_.flags & shared::frame_ambient_occlusion)) return one();
+    if (!shared::traces_ambient(frame_.flags)) return one();
     const Unsigned steps = hn::ShiftRight<shared::plan_visibility_shift>(as_unsigned(word));
     return to_float(as_integer(steps)) / number(shared::plan_visibility_steps);
   }

@@ -94,14 +94,15 @@ class HitShading {
   /// What of a hit's light needs no ray.
   HWY_INLINE Float3 steady_light(const Surface& s, const Material& m, Float t, Integer order,
                                  Mask met) {
-    Float3 light = open_light(m);
-    if (cache_) {
-      const Mask lit = hn::AndNot(s.has(shared::material_unlit), met);
+    Float3 light = numbers(0.0f);
+    Mask open = hn::AndNot(s.has(shared::material_unlit), met);
+    if (cache_ && !none(open)) {
       const CachedLanes cached =
-          cached_light(*cache_, s.position, s.geometric, t, order, lit, touches_);
-      light = select(cached.known, reflected_light(m, cached.indirect, environment_, frame_.flags),
-                     light);
+          cached_light(*cache_, s.position, s.geometric, t, order, open, touches_);
+      open = hn::AndNot(cached.known, open);
+      light = reflected_light(m, cached.indirect, environment_, frame_.flags);
     }
+    if (!none(open)) light = select(open, open_light(m), light);
     light = select(s.has(shared::material_unlit), s.base_color, light);
     return enabled(shared::frame_emissive) ? light + s.emissive : light;
   }

@@ -73,7 +73,7 @@ Composition pixel_composition(ivec2 pixel) {
 /// The frame's radiance from its signals. NaN must not spread through the history.
 vec4 composed(Composition terms, vec2 visibility, vec3 specular, vec3 indirect) {
   float lit = enabled(frame_shadows) ? visibility.x : 1.0;
-  float open = enabled(frame_ambient_occlusion) ? visibility.y : 1.0;
+  float open = traces_ambient(frame.flags) ? visibility.y : 1.0;
   vec3 radiance = terms.own + terms.direct * lit + terms.ambient * open +
                   terms.specular * specular + terms.indirect * indirect;
   if (any(isnan(radiance)) || any(isinf(radiance))) radiance = vec3(0.0);

@@ -33,8 +33,8 @@ uint normal_axis(vec3 n) {
 CellKey cell_key(vec3 position, vec3 normal, float size) {
   ivec3 cell = ivec3(floor(position / size));
   uint level = uint(int(round(log2(size))) + 64);
-  uvec3 hashed = pcg3d(uvec3(cell) ^ uvec3(level * 8u + normal_axis(normal), 0u, 0u));
-  hashed = pcg3d(hashed);
+  uvec3 hashed = pcg3d(uvec3(cell));
+  hashed = pcg3d(hashed + uvec3(level * 8u + normal_axis(normal), 0u, 0u));
   return CellKey((hashed.x % (cache_cells / cache_bucket)) * cache_bucket, max(hashed.y, 1u));
 }
 

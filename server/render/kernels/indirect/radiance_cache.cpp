@@ -53,9 +53,9 @@ struct CellKey {
 
 CellKey cell_key(const vec3& position, const vec3& normal, int level) {
   const vec3 cell = glm::floor(position * std::ldexp(1.0f, -level));
-  uvec3 hashed{glm::ivec3(cell)};
-  hashed.x ^= static_cast<std::uint32_t>(level + 64) * 8u + normal_axis(normal);
-  hashed = pcg3d(pcg3d(hashed));
+  uvec3 hashed = pcg3d(uvec3(glm::ivec3(cell)));
+  hashed.x += static_cast<std::uint32_t>(level + 64) * 8u + normal_axis(normal);
+  hashed = pcg3d(hashed);
   constexpr std::uint32_t buckets = shared::cache_cells / shared::cache_bucket;
   return {hashed.x % buckets * shared::cache_bucket, std::max(hashed.y, 1u)};
 }

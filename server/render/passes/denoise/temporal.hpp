@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "protocol/settings/settings.hpp"
 #include "render/passes/denoise/reproject.hpp"
 
 namespace heliograph::render {
