@@ -14,7 +14,7 @@ void main() {
   if (cache_keys[slot] == 0u || cells[slot].updated == 0u) return;
   uint samples = min(cells[slot].samples + 1u, constants.most_samples);
   // The first samples know little of other cells' light: later ones weigh more.
-  float weight = min(2.0 / float(samples + 1u), 1.0);
+  float weight = min(max(2.0 / float(samples + 1u), constants.least_weight), 1.0);
   cells[slot].direct = mix(cells[slot].direct, cells[slot].new_direct, weight);
   cells[slot].indirect = mix(cells[slot].indirect, cells[slot].new_indirect, weight);
   cells[slot].samples = samples;

@@ -14,6 +14,8 @@ SHARED_CONSTANT uint cache_words = cache_cells + 2u;
 // Cells of fewer samples are updated so much more often.
 SHARED_CONSTANT uint cache_new_samples = 4u;
 SHARED_CONSTANT float cache_new_factor = 8.0f;
+// Short rays ask for cells so many times half as large, at most: smaller ones are too many.
+SHARED_CONSTANT int finer_levels = 2;
 // One of so many rays moves the cell that it asks for.
 SHARED_CONSTANT uint moves_every = 8u;
 
@@ -34,13 +36,14 @@ struct RadianceCell {
 
 struct RadianceCacheConstants {
   uint frame_number;
-  uint reset;        // 1: forgets all cells
-  float cell_angle;  // size of cells as a fraction of their distance
-  float least_size;  // metres
-  uint most_samples;  // in a mean
-  uint lifetime;      // frames without use
-  float updates;      // cells in each frame, about
+  uint reset;           // 1: forgets all cells
+  float cell_angle;     // size of cells as a fraction of their distance
   float cell_fraction;  // largest size as a fraction of the length of the ray that asks
+  float least_size;     // metres
+  uint most_samples;    // in a mean
+  uint lifetime;        // frames without use
+  float updates;        // cells in each frame, about
+  float least_weight;   // of a new sample
 };
 
 SHARED_END

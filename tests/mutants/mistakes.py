@@ -62,7 +62,7 @@ MISTAKES = (
             "shader_tests", "VisibleNormals.DirectionsFollowTheDensityAllAround:"
             "VisibleNormals.SamplesCoverAllAzimuths"),
     Mistake("7", "radiance is clamped against fireflies",
-            "shaders/reflections/specular_shade.comp",
+            "shaders/lib/rays/specular_shade.glsl",
             "sanitize(light * weight), travelled", "min(sanitize(light * weight), 0.7), travelled",
             "image_tests", "SpecularRays.MeanIsOneInFurnace"),
     Mistake("8a", "one pixel is tested for all four taps",

@@ -51,6 +51,7 @@ void FrameRig::set_view(const scene::Camera& camera, std::uint32_t sample) {
   constants_ = render::make_frame_constants(camera, settings_, moving_,
                                             {.drawn = options_.extent, .shown = inputs_.shown},
                                             sample, has_view_ ? &before : nullptr);
+  clock_.age = has_view_ ? clock_.age + 1 : 0;
   has_view_ = true;
   std::memcpy(constants_buffer_.mapped(), &constants_, sizeof constants_);
 }

@@ -316,6 +316,7 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
   if (!state.settings.accumulation.enabled) state.clock.samples = 0;
   const shared::FrameConstants before = state.constants;
   const bool had_previous = state.has_previous;
+  const std::uint32_t age = std::exchange(state.clock.age, had_previous ? state.clock.age + 1 : 0);
   state.constants = make_frame_constants(
       state.camera, state.settings, *state.moving, {.drawn = state.drawn(), .shown = state.extent},
       state.sample_index++, state.has_previous ? &before : nullptr);
@@ -332,6 +333,7 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
   if (!state.compiled->plan.execute(canceled)) {
     state.constants = before;
     state.has_previous = had_previous;
+    state.clock.age = age;
     --state.sample_index;
     state.stale = true;
     return std::nullopt;

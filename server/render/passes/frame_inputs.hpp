@@ -18,6 +18,7 @@ struct SceneMotion;
 /// Where a frame stands in time.
 struct FrameClock {
   std::uint32_t samples = 0;     // already in the accumulated mean
+  std::uint32_t age = 0;         // frames since the history was invalid
   float seconds = 1.0f / 60.0f;  // since the frame before
   /// Whether the first of these samples is part of the mean: it is not if it left pixels out.
   bool first_counts = true;

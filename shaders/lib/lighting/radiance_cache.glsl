@@ -15,11 +15,15 @@ struct CellKey {
   uint check;
 };
 
-/// Edge length of cells at `position`: a power of two. A short ray sees little of a large cell.
-float cell_size(vec3 position, float t, RadianceCacheConstants c) {
-  float size = min(distance(position, frame.eye.xyz) * c.cell_angle, t * c.cell_fraction);
-  size = max(size, c.least_size);
-  return exp2(ceil(log2(size)));
+/// Binary logarithm of the edge length of cells at `position`, as far as the eye is concerned.
+int cell_level(vec3 position, RadianceCacheConstants c) {
+  float size = distance(position, frame.eye.xyz) * c.cell_angle;
+  return int(ceil(log2(max(size, c.least_size))));
+}
+
+/// The same for a ray of length `t`, metres: a short one sees little of a large cell.
+int cell_level_of_ray(float t, RadianceCacheConstants c) {
+  return int(ceil(log2(max(t * c.cell_fraction, c.least_size))));
 }
 
 /// 0 to 5: the axis that a normal follows most.
@@ -30,11 +34,18 @@ uint normal_axis(vec3 n) {
   return n.z >= 0.0 ? 4u : 5u;
 }
 
-CellKey cell_key(vec3 position, vec3 normal, float size) {
-  ivec3 cell = ivec3(floor(position / size));
-  uint level = uint(int(round(log2(size))) + 64);
+/// Which of four quarters about the normal's axis a ray comes from: the two sides of a thin wall on
+/// a floor have cells of their own.
+uint quarter(vec3 direction, uint axis) {
+  vec2 along = axis < 2u ? direction.yz : axis < 4u ? direction.xz : direction.xy;
+  return (along.x > 0.0 ? 1u : 0u) + (along.y > 0.0 ? 2u : 0u);
+}
+
+CellKey cell_key(vec3 position, vec3 normal, vec3 direction, int level) {
+  ivec3 cell = ivec3(floor(position * exp2(float(-level))));
   uvec3 hashed = pcg3d(uvec3(cell));
-  hashed = pcg3d(hashed + uvec3(level * 8u + normal_axis(normal), 0u, 0u));
+  uint axis = normal_axis(normal);
+  hashed = pcg3d(hashed + uvec3(uint(level + 64) * 32u + axis * 4u + quarter(direction, axis), 0u, 0u));
   return CellKey((hashed.x % (cache_cells / cache_bucket)) * cache_bucket, max(hashed.y, 1u));
 }
 
@@ -47,8 +58,8 @@ uint find_cell(CellKey key) {
 
 /// Finds a cell or makes it, if there is a free slot. Which place of a cell is updated changes: a
 /// random one of those that are asked for, so that its mean is theirs.
-uint touch_cell(vec3 position, vec3 normal, float size, uint frame_number) {
-  CellKey key = cell_key(position, normal, size);
+uint touch_cell(vec3 position, vec3 normal, vec3 direction, int level, uint frame_number) {
+  CellKey key = cell_key(position, normal, direction, level);
   uint slot = find_cell(key);
   for (uint i = 0u; i < cache_bucket && slot == no_cell; ++i) {
     uint at = key.first + i;
@@ -78,15 +89,18 @@ struct CachedLight {
   bool known;
 };
 
-/// `t`: length of the ray that asks, metres.
-CachedLight cached_light(vec3 position, vec3 normal, float t, RadianceCacheConstants c) {
-  float size = cell_size(position, t, c);
+/// `direction` and `t` (length, metres): of the ray that asks.
+CachedLight cached_light(vec3 position, vec3 normal, vec3 direction, float t,
+                         RadianceCacheConstants c) {
+  int coarse = cell_level(position, c);
+  int level = clamp(cell_level_of_ray(t, c), coarse - finer_levels, coarse);
   for (uint i = 0u; i < 2u; ++i) {
-    uint slot = touch_cell(position, normal, size, c.frame_number);
+    uint slot = touch_cell(position, normal, direction, level, c.frame_number);
     if (slot != no_cell && cells[slot].samples > 0u) {
       return CachedLight(cells[slot].direct, cells[slot].indirect, true);
     }
-    size *= 8.0;
+    if (level == coarse) break;
+    level = coarse;
   }
   return CachedLight(vec3(0.0), vec3(0.0), false);
 }

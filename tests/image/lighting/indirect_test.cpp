@@ -70,7 +70,7 @@ TEST(Indirect, ClosedFurnaceHasTheLightOfAllBounces) {
   }
 }
 
-/// A room with a red and a green wall and a lamp whose shade keeps it from the ceiling.
+/// A room with a red and a green wall and a light whose shade keeps it from the ceiling.
 std::shared_ptr<const scene::Scene> cornell_box() {
   SceneBuilder builder;
   const auto walls = box_walls();
@@ -82,9 +82,9 @@ std::shared_ptr<const scene::Scene> cornell_box() {
   builder.place(builder.add_sphere(0.4f, white),
                 glm::translate(glm::mat4(1.0f), {0.3f, -0.6f, -0.2f}));
   builder.place(builder.add_quad(
-      {{{-0.3f, 0.8f, -0.3f}, {0.3f, 0.8f, -0.3f}, {0.3f, 0.8f, 0.3f}, {-0.3f, 0.8f, 0.3f}}},
+      {{{-0.6f, 0.6f, -0.6f}, {0.6f, 0.6f, -0.6f}, {0.6f, 0.6f, 0.6f}, {-0.6f, 0.6f, 0.6f}}},
       white));
-  builder.add_point_light({0, 0.75f, 0}, glm::vec3(0.8f));
+  builder.add_point_light({0, 0.25f, 0}, glm::vec3(0.8f));
   return builder.build();
 }
 
@@ -118,33 +118,6 @@ TEST(Indirect, CornellBoxHasTheColoursOfTheReference) {
   rig.accumulate(8);
   EXPECT_LT(mean_of(rig.capture("accumulated"), {20, 3}, {40, 8}).x,
             0.2 * mean_of(expected, {20, 3}, {40, 8}).x);
-}
-
-// Two rooms, one with a lamp, with a wall of 2 cm between them that leaves no gap and lies away
-// from the borders of cells.
-TEST(Indirect, LittleLightLeaksThroughThinWalls) {
-  SceneBuilder builder;
-  std::array<Corners, 6> walls = box_walls();
-  for (Corners& wall : walls) {
-    for (glm::vec3& corner : wall) corner.x *= 2.0f;
-  }
-  builder.place(builder.add_quads(walls, surface(glm::vec3(0.8f))));
-  const std::array<Corners, 2> between{
-      {{{{0.02f, -1, -1}, {0.02f, -1, 1}, {0.02f, 1, 1}, {0.02f, 1, -1}}},
-       {{{0.04f, -1, 1}, {0.04f, -1, -1}, {0.04f, 1, -1}, {0.04f, 1, 1}}}}};
-  builder.place(builder.add_quads(between, surface(glm::vec3(0.8f))));
-  builder.add_point_light({-1, 0.5f, 0}, glm::vec3(1.0f));
-  RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(0.0f)),
-                  look({-1.8f, 0, 0.8f}, {-0.5f, 0, -0.5f}, 70.0f), 64, 48);
-  rig.apply(gathered());
-  rig.accumulate(64);
-  const double lit = mean_of(rig.capture("accumulated"), {0, 0}, {64, 48}).x;
-  rig.renderer.set_camera(look({1.8f, 0, 0.8f}, {0.5f, 0, -0.5f}, 70.0f));
-  save_image("indirect_leak", rig.accumulate(64));
-  const double dark = mean_of(rig.capture("accumulated"), {0, 0}, {64, 48}).x;
-  std::printf("light that leaks: %.4f of the lit room's\n", dark / lit);
-  EXPECT_GT(lit, 0.05);
-  EXPECT_LT(dark, 0.02 * lit);
 }
 
 /// Frames of a moving view, one after the other.

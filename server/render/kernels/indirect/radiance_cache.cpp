@@ -28,11 +28,8 @@ uvec3 pcg3d(uvec3 v) {
   return v;
 }
 
-/// Binary logarithm of the edge length of cells at `position`.
-int cell_level(const vec3& position, float t, const vec3& eye,
-               const shared::RadianceCacheConstants& c) {
-  const float size = std::max(
-      std::min(glm::distance(position, eye) * c.cell_angle, t * c.cell_fraction), c.least_size);
+/// The least integer whose power of two is `size` or more.
+int level_of(float size) {
   int exponent = 0;
   // A fraction of at least a half, times a power of two.
   const float fraction = std::frexp(size, &exponent);
@@ -51,10 +48,18 @@ struct CellKey {
   std::uint32_t check;
 };
 
-CellKey cell_key(const vec3& position, const vec3& normal, int level) {
+std::uint32_t quarter(const vec3& direction, std::uint32_t axis) {
+  const glm::vec2 along = axis < 2   ? glm::vec2(direction.y, direction.z)
+                          : axis < 4 ? glm::vec2(direction.x, direction.z)
+                                     : glm::vec2(direction.x, direction.y);
+  return (along.x > 0.0f ? 1u : 0u) + (along.y > 0.0f ? 2u : 0u);
+}
+
+CellKey cell_key(const vec3& position, const vec3& normal, const vec3& direction, int level) {
   const vec3 cell = glm::floor(position * std::ldexp(1.0f, -level));
   uvec3 hashed = pcg3d(uvec3(glm::ivec3(cell)));
-  hashed.x += static_cast<std::uint32_t>(level + 64) * 8u + normal_axis(normal);
+  const std::uint32_t axis = normal_axis(normal);
+  hashed.x += static_cast<std::uint32_t>(level + 64) * 32u + axis * 4u + quarter(direction, axis);
   hashed = pcg3d(hashed);
   constexpr std::uint32_t buckets = shared::cache_cells / shared::cache_bucket;
   return {hashed.x % buckets * shared::cache_bucket, std::max(hashed.y, 1u)};
@@ -75,24 +80,28 @@ std::uint32_t priority_of(const vec3& position, std::uint32_t frame_number) {
 
 }  // namespace
 
-CachedLight CacheReader::find(const vec3& position, const vec3& normal, float t,
-                              std::uint32_t order, std::vector<CacheTouch>& touches) const {
-  int level = cell_level(position, t, eye_, constants_);
-  for (int i = 0; i < 2; ++i) {
-    const CellKey key = cell_key(position, normal, level);
+CachedLight CacheReader::find(const vec3& position, const vec3& normal, const vec3& direction,
+                              float t, std::uint32_t order,
+                              std::vector<CacheTouch>& touches) const {
+  const shared::RadianceCacheConstants& c = constants_;
+  const int coarse = level_of(std::max(glm::distance(position, eye_) * c.cell_angle, c.least_size));
+  int level = std::clamp(level_of(std::max(t * c.cell_fraction, c.least_size)),
+                         coarse - shared::finer_levels, coarse);
+  while (true) {
+    const CellKey key = cell_key(position, normal, direction, level);
     const std::uint32_t slot = find_slot(keys_, key);
-    const std::uint32_t priority = priority_of(position, constants_.frame_number);
+    const std::uint32_t priority = priority_of(position, c.frame_number);
     if (slot == no_cell || priority > 0) {
       touches.push_back({priority, order, key.first, key.check, position, normal});
     }
     if (slot != no_cell) {
       shared::RadianceCell& cell = cells_[slot];
-      std::atomic_ref(cell.last_used).store(constants_.frame_number, std::memory_order_relaxed);
+      std::atomic_ref(cell.last_used).store(c.frame_number, std::memory_order_relaxed);
       if (cell.samples > 0) return {cell.direct, cell.indirect, true};
     }
-    level += 3;
+    if (level == coarse) return {};
+    level = coarse;
   }
-  return {};
 }
 
 void CacheReader::add(std::span<const CacheTouch> touches) {
@@ -141,7 +150,8 @@ void radiance_cache_blend(const RadianceCacheBlendJob& job) {
       shared::RadianceCell& cell = job.cells[i];
       if (job.keys[i] == 0 || cell.updated == 0) continue;
       cell.samples = std::min(cell.samples + 1, constants.most_samples);
-      const float weight = std::min(2.0f / static_cast<float>(cell.samples + 1), 1.0f);
+      const float later = 2.0f / static_cast<float>(cell.samples + 1);
+      const float weight = std::min(std::max(later, constants.least_weight), 1.0f);
       cell.direct = glm::mix(cell.direct, cell.new_direct, weight);
       cell.indirect = glm::mix(cell.indirect, cell.new_indirect, weight);
     }

@@ -1,5 +1,7 @@
 #include "render/passes/denoise/temporal.hpp"
 
+#include <limits>
+
 #include "render/kernels/spatial_variance.hpp"
 #include "render/kernels/temporal.hpp"
 #include "render/passes/denoise/denoise_constants.hpp"
@@ -120,9 +122,10 @@ AccumulatedSignal accumulate_radiance(gpu::FramePlan& plan, const FrameInputs& i
   const auto& settings = channel.settings;
   const gpu::History fast_history = declare_fast_history(plan, buffers.fast_history, four_halves,
                                                          settings.rectification, history.previous);
-  const auto constants = [in, &settings, flags = channel.flags] {
+  const auto constants = [in, &settings, flags = channel.flags, most = channel.most_frames] {
     shared::TemporalConstants made = temporal_constants(in, settings);
     made.flags |= flags();
+    made.frames = std::min(made.frames, most());
     return made;
   };
   const gpu::ImageRef percentiles =
@@ -171,25 +174,33 @@ AccumulatedSignal accumulate_radiance(gpu::FramePlan& plan, const FrameInputs& i
 
 RadianceChannel specular_channel(const FrameInputs& in, const SampleHistories& histories) {
   const auto& settings = in.settings.specular_temporal;
-  return {"specular",
-          specular_temporal_buffers,
-          settings,
-          histories.specular,
-          histories.specular_length,
-          [&settings] {
-            return (settings.virtual_motion ? shared::temporal_virtual_motion : 0u) |
-                   (settings.curved_reflectors ? shared::temporal_curved_reflectors : 0u);
-          }};
+  return {.name = "specular",
+          .buffers = specular_temporal_buffers,
+          .settings = settings,
+          .history = histories.specular,
+          .history_length = histories.specular_length,
+          .flags =
+              [&settings] {
+                return (settings.virtual_motion ? shared::temporal_virtual_motion : 0u) |
+                       (settings.curved_reflectors ? shared::temporal_curved_reflectors : 0u);
+              },
+          .most_frames = [] { return std::numeric_limits<float>::max(); }};
 }
 
 RadianceChannel indirect_channel(gpu::FramePlan& plan, const FrameInputs& in) {
   const auto& buffers = indirect_temporal_buffers;
-  return {"indirect",
-          buffers,
-          in.settings.indirect_temporal,
-          plan.history(buffers.history.name, four_halves),
-          plan.history(buffers.history_length.name, four_halves),
-          [] { return 0u; }};
+  // The first frames know few bounces: the later half of all is enough.
+  static constexpr std::uint32_t least_frames = 4;
+  return {.name = "indirect",
+          .buffers = buffers,
+          .settings = in.settings.indirect_temporal,
+          .history = plan.history(buffers.history.name, four_halves),
+          .history_length = plan.history(buffers.history_length.name, four_halves),
+          .flags = [] { return 0u; },
+          .most_frames =
+              [&clock = in.clock] {
+                return static_cast<float>(std::max(clock.age / 2, least_frames));
+              }};
 }
 
 void feed_visibility_back(gpu::FramePlan& plan, const FrameInputs& in,

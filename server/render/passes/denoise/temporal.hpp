@@ -143,6 +143,7 @@ struct RadianceChannel {
   gpu::History history;
   gpu::History history_length;
   std::function<std::uint32_t()> flags;  // more of them, shared::temporal_*
+  std::function<float()> most_frames;    // of history
 };
 RadianceChannel specular_channel(const FrameInputs& in, const SampleHistories& histories);
 RadianceChannel indirect_channel(gpu::FramePlan& plan, const FrameInputs& in);
