@@ -3,6 +3,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <numeric>
 
