@@ -13,6 +13,12 @@ SHARED_CONSTANT uint frame_environment_specular = 16u;
 SHARED_CONSTANT uint frame_emissive = 32u;
 SHARED_CONSTANT uint frame_environment_visible = 64u;
 SHARED_CONSTANT uint frame_orthographic = 128u;
+SHARED_CONSTANT uint frame_indirect = 256u;  // indirect diffuse light in place of ambient occlusion
+
+// Whether surfaces in view trace ambient occlusion. Blended ones do so beside indirect light, too.
+SHARED_FUNCTION bool traces_ambient(uint flags) {
+  return (flags & (frame_ambient_occlusion | frame_indirect)) == frame_ambient_occlusion;
+}
 
 struct FrameConstants {
   mat4 view_projection;      // world -> clip, with this sample's jitter

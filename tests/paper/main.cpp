@@ -102,8 +102,9 @@ struct Options {
   /// Ground truth of a shot, from the folder of those that earlier runs have left.
   std::vector<render::Frame> truth(const Stage& stage, const std::string& name,
                                    const Shot& shot) const {
-    const GroundTruth source =
-        ground_truth == "reference" ? GroundTruth::reference : GroundTruth::accumulated;
+    const GroundTruth source = ground_truth == "reference" ? GroundTruth::reference
+                               : ground_truth == "full"    ? GroundTruth::full
+                                                           : GroundTruth::accumulated;
     if (ground_truth_folder.empty()) return stage.ground_truth(source, shot, samples);
     std::ostringstream file;
     file << name << size << '_' << frames << '_' << frame_rate << '_' << samples << '_'
@@ -236,8 +237,9 @@ void add_options(CLI::App& app, Options& options) {
                  "Fraction of width and height that frames are drawn at and reconstructed from")
       ->check(CLI::Range(0.1f, 1.0f));
   app.add_option("--truth", options.ground_truth,
-                 "The path tracer, or the hybrid's own samples averaged")
-      ->check(CLI::IsMember({"reference", "accumulated"}))
+                 "The path tracer along the hybrid's light paths, the same with global "
+                 "illumination, or the hybrid's own samples averaged")
+      ->check(CLI::IsMember({"reference", "full", "accumulated"}))
       ->capture_default_str();
   app.add_option("--ground-truth-folder", options.ground_truth_folder,
                  "Folder that keeps ground truth from run to run: rendered once for each case");

@@ -110,9 +110,10 @@ std::vector<render::Frame> Stage::ground_truth(GroundTruth source, const Shot& s
   settings.accumulation.max_samples = samples;
   settings.accumulation.blend_samples = 0;
   settings.antialiasing.temporal = false;
-  if (source == GroundTruth::reference) {
+  if (source != GroundTruth::accumulated) {
     settings.reference.use = protocol::ReferenceUse::always;
-    settings.reference.scope = protocol::ReferenceScope::same_paths;
+    settings.reference.scope = source == GroundTruth::full ? protocol::ReferenceScope::full
+                                                           : protocol::ReferenceScope::same_paths;
   } else {
     settings.shadow_temporal.enabled = settings.specular_temporal.enabled = false;
     settings.shadow_blur.enabled = settings.specular_blur.enabled = false;

@@ -37,6 +37,7 @@ struct Played {
 /// Source of ground truth.
 enum class GroundTruth {
   reference,    // the path tracer along the hybrid's own light paths
+  full,         // the path tracer with global illumination
   accumulated,  // the mean of the hybrid without denoisers: isolates denoising errors
 };
 

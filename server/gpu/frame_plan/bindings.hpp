@@ -106,6 +106,9 @@ template <class Stage, typename Element>
 using ReadWriteBuffer = typename Stage::template Buffer<Access::read_write, Element>;
 template <class Stage, typename Element>
 using OptionalWriteBuffer = typename Stage::template OptionalBuffer<Access::write, Element>;
+template <class Stage, typename Element>
+using OptionalReadWriteBuffer =
+    typename Stage::template OptionalBuffer<Access::read_write, Element>;
 
 /// How many resources a list has.
 template <template <class> class Bindings>

@@ -60,7 +60,6 @@ bool FramePlan::run_passes() {
   for (std::size_t i = 0; i < passes_.size(); ++i) {
     const Pass& pass = passes_[i];
     timings_[i].milliseconds = -1.0f;  // not run
-    if (canceled_) return false;
     if (i >= cancelable_) asks_canceled_ = nullptr;
     if (is_canceled()) return false;
     barrier |= pass.barrier_before;

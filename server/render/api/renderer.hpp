@@ -16,6 +16,9 @@
 
 namespace heliograph::render {
 
+/// Of `side` pixels those that are drawn at `scale`, 0 to 1: at least one.
+std::uint32_t drawn_side(std::uint32_t side, float scale);
+
 /// Renders one view of a scene: camera, settings, size and history of one session.
 /// Not thread safe: one thread calls it.
 class Renderer {

@@ -15,6 +15,7 @@
 #include "render/passes/denoise/reproject.hpp"
 #include "render/passes/denoise/temporal.hpp"
 #include "render/passes/gbuffer/gbuffer.hpp"
+#include "render/passes/indirect/trace_indirect.hpp"
 #include "render/passes/post/accumulate.hpp"
 #include "render/passes/post/mean_weight.hpp"
 #include "render/passes/post/present.hpp"
@@ -48,7 +49,8 @@ const std::vector<BufferDescription>& all_buffers() {
       present_buffers, gbuffer_buffers, reproject_buffers, sampling_plan_buffers,
       visibility_buffers, specular_buffers, denoise_visibility_buffers, visibility_temporal_buffers,
       half_visibility_buffers, visibility_half_atrous_buffers, visibility_atrous_buffers,
-      denoise_specular_buffers, specular_temporal_buffers, specular_atrous_buffers, skybox_buffers,
+      denoise_specular_buffers, specular_temporal_buffers, specular_atrous_buffers,
+      indirect_buffers, indirect_temporal_buffers, indirect_atrous_buffers, skybox_buffers,
       compose_buffers, blended_buffers, reference_buffers, accumulate_buffers,
       temporal_antialias_buffers, mean_weight_buffers);
   return buffers;

@@ -3,10 +3,12 @@
 #include "render/passes/blend/blend_surfaces.hpp"
 #include "render/passes/compose/compose.hpp"
 #include "render/passes/compose/skybox.hpp"
+#include "render/passes/denoise/denoise_indirect.hpp"
 #include "render/passes/denoise/denoise_specular.hpp"
 #include "render/passes/denoise/denoise_visibility.hpp"
 #include "render/passes/gbuffer/draw_gbuffer.hpp"
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
+#include "render/passes/indirect/trace_indirect.hpp"
 #include "render/passes/post/accumulate.hpp"
 #include "render/passes/post/mean_weight.hpp"
 #include "render/passes/post/present.hpp"
@@ -39,6 +41,10 @@ bool denoises_specular(const protocol::Settings& s) {
   return s.specular.enabled && (s.specular_temporal.enabled || s.specular_blur.enabled);
 }
 
+bool denoises_indirect(const protocol::Settings& s) {
+  return s.indirect.enabled && (s.indirect_temporal.enabled || s.indirect_blur.enabled);
+}
+
 Reprojected reproject_and_plan(gpu::FramePlan& plan, const FrameInputs& in,
                                const GBuffer& gbuffer) {
   const Guide guide = reproject(plan, in, gbuffer);
@@ -52,14 +58,14 @@ Reprojected reproject_and_plan(gpu::FramePlan& plan, const FrameInputs& in,
 /// Whether a frame traces shadows or ambient occlusion.
 auto traces_visibility(const FrameInputs& in) {
   return [&frame = in.constants] {
-    return (frame.flags & (shared::frame_shadows | shared::frame_ambient_occlusion)) != 0;
+    return (frame.flags & shared::frame_shadows) != 0 || shared::traces_ambient(frame.flags);
   };
 }
 
 /// The signals without noise, as far as the settings denoise them.
 DenoisedSignals denoise(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                         const Reprojected& from, const NoisySignals& noisy) {
-  DenoisedSignals denoised{{}, noisy.specular};
+  DenoisedSignals denoised{{}, noisy.specular, noisy.indirect};
   // Visibility that is not traced is not read either.
   plan.only_when(traces_visibility(in), [&] {
     denoised.visibility = combine_visibility(plan, in, noisy.shadows, noisy.ambient);
@@ -70,6 +76,9 @@ DenoisedSignals denoise(gpu::FramePlan& plan, const FrameInputs& in, const GBuff
   if (denoises_specular(in.settings)) {
     denoised.specular =
         denoise_specular(plan, in, gbuffer, from.guide, from.histories, *noisy.specular);
+  }
+  if (denoises_indirect(in.settings)) {
+    denoised.indirect = denoise_indirect(plan, in, gbuffer, from.guide, *noisy.indirect);
   }
   return denoised;
 }
@@ -98,18 +107,23 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
 
   std::optional<Reprojected> from;
   std::optional<gpu::ImageRef> planned;
-  if (denoises_specular(in.settings)) {
+  if (denoises_specular(in.settings) || denoises_indirect(in.settings)) {
     from = reproject_and_plan(plan, in, gbuffer);
   } else if (denoises_visibility(in.settings)) {
     plan.only_when(traces_visibility(in), [&] { from = reproject_and_plan(plan, in, gbuffer); });
   }
   if (from) planned = from->planned;
   NoisySignals noisy{
-      trace_shadows(plan, in, gbuffer, planned), trace_ambient(plan, in, gbuffer, planned), {}};
+      trace_shadows(plan, in, gbuffer, planned), trace_ambient(plan, in, gbuffer, planned), {}, {}};
+  std::optional<RadianceCache> cache;
+  if (in.settings.indirect.enabled) {
+    cache = update_radiance_cache(plan, in);
+    noisy.indirect = trace_indirect(plan, in, gbuffer, *cache, planned);
+  }
   if (in.settings.specular.enabled) {
     std::optional<gpu::ImageRef> visibility;
     if (from) visibility = from->histories.visibility.previous;
-    noisy.specular = trace_specular(plan, in, gbuffer, planned, visibility);
+    noisy.specular = trace_specular(plan, in, gbuffer, planned, visibility, cache);
   }
   std::optional<DenoisedSignals> denoised;
   if (from) denoised = denoise(plan, in, gbuffer, *from, noisy);

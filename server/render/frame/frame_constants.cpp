@@ -11,6 +11,7 @@ namespace {
 std::uint32_t flags(const protocol::Settings& settings, const scene::Camera& camera) {
   const auto bit = [](bool on, std::uint32_t flag) { return on ? flag : 0u; };
   return bit(settings.shadows.enabled, shared::frame_shadows) |
+         bit(settings.indirect.enabled, shared::frame_indirect) |
          bit(settings.ambient.occlusion, shared::frame_ambient_occlusion) |
          bit(settings.lighting.direct, shared::frame_direct) |
          bit(settings.lighting.environment_diffuse, shared::frame_environment_diffuse) |

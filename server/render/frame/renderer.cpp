@@ -48,6 +48,10 @@ bool only_move(std::span<const shared::Light> before, std::span<const shared::Li
 
 }  // namespace
 
+std::uint32_t drawn_side(std::uint32_t side, float scale) {
+  return std::max(1u, static_cast<std::uint32_t>(std::lround(scale * static_cast<float>(side))));
+}
+
 struct Renderer::State {
   State(Engine::Parts& engine, std::shared_ptr<const SceneResources> empty)
       : parts(engine),
@@ -131,10 +135,7 @@ void Renderer::State::rebuild_frame_plan() {
 
 VkExtent2D Renderer::State::drawn() const {
   if (settings.reference.use == protocol::ReferenceUse::always) return extent;
-  const auto scaled = [&](std::uint32_t side) {
-    return std::max(1u, static_cast<std::uint32_t>(std::lround(draw_scale * float(side))));
-  };
-  return {scaled(extent.width), scaled(extent.height)};
+  return {drawn_side(extent.width, draw_scale), drawn_side(extent.height, draw_scale)};
 }
 
 void Renderer::State::set_drawn() {

@@ -27,6 +27,14 @@ class Composition {
     Triple<V> direct;
     Triple<V> ambient;
     Triple<V> specular;
+    Triple<V> indirect;
+  };
+  /// The signals that they are multiplied by.
+  struct Signals {
+    V shadow;
+    V ambient;
+    Triple<V> specular;
+    Triple<V> indirect;
   };
 
  public:
@@ -61,22 +69,32 @@ class Composition {
   HWY_INLINE void block(const ViewedRow<D>& view, int x, int y) const {
     const V view_z = load(job_.motion, x, y).w;
     const M seen = hn::Gt(view_z, hn::Zero(d_));
-    Terms terms{black(), black(), black(), black()};
+    Terms terms{black(), black(), black(), black(), black()};
     if (!hn::AllFalse(d_, seen)) add_surface(view, x, y, view_z, seen, terms);
     if (!hn::AllTrue(d_, seen)) {
       terms.own = select(seen, terms.own, color(job_.background, x, y));
     }
     const V shadow = load_one(job_.shadows, x, y), ambient = load_one(job_.ambient, x, y);
     const bool reflects = job_.constants.max_roughness >= 0.0f;
-    const Triple<V> raw = reflects ? color(job_.specular, x, y) : black();
+    const bool gathers = enabled(shared::frame_indirect);
+    Signals noisy{shadow, ambient, reflects ? color(job_.specular, x, y) : black(), black()};
+    M sampled = hn::Eq(hn::Zero(d_), hn::Zero(d_));
+    if (gathers) {
+      const Quad<V> indirect = load(job_.indirect, x, y);
+      noisy.indirect = {indirect.x, indirect.y, indirect.z};
+      sampled = hn::Ge(indirect.w, hn::Zero(d_));
+    }
     if (!job_.denoised_visibility) {
-      store(terms, shadow, ambient, raw, job_.hdr, x, y);
+      store(terms, noisy, job_.hdr, x, y);
       return;
     }
     const Quad<V> visibility = load(job_.denoised_visibility, x, y);
-    const Triple<V> specular = reflects ? color(job_.denoised_specular, x, y) : black();
-    store(terms, visibility.x, visibility.y, specular, job_.hdr, x, y);
-    store(terms, shadow, ambient, raw, job_.hdr_noisy, x, y);
+    const Signals denoised{visibility.x, visibility.y,
+                           reflects ? color(job_.denoised_specular, x, y) : black(),
+                           gathers ? color(job_.denoised_indirect, x, y) : black()};
+    store(terms, denoised, job_.hdr, x, y);
+    noisy.indirect = select(sampled, noisy.indirect, denoised.indirect);
+    store(terms, noisy, job_.hdr_noisy, x, y);
   }
 
   HWY_INLINE void add_surface(const ViewedRow<D>& view, int x, int y, V view_z, M seen,
@@ -118,7 +136,9 @@ class Composition {
       terms.direct =
           direct_light(d_, job_.lights, job_.tables.ltc, m, view.world_position(x, view_z), lit);
     }
-    if (enabled(shared::frame_environment_diffuse)) {
+    if (enabled(shared::frame_indirect)) {
+      terms.indirect = select(lit, wide_albedo(m), terms.indirect);
+    } else if (enabled(shared::frame_environment_diffuse)) {
       terms.ambient = select(lit, wide_albedo(m) * irradiance(m.normal) * occlusion, terms.ambient);
     }
     // Roughness is stored in steps of 1 / 255: a little more than half of one is still the same.
@@ -168,13 +188,13 @@ class Composition {
            set(job_.frame.environment_intensity);
   }
 
-  HWY_INLINE void store(const Terms& terms, V shadow, V ambient, const Triple<V>& specular,
-                        const gpu::HostView& to, int x, int y) const {
+  HWY_INLINE void store(const Terms& terms, const Signals& signals, const gpu::HostView& to, int x,
+                        int y) const {
     const V one = set(1.0f);
-    const V lit = enabled(shared::frame_shadows) ? shadow : one;
-    const V open = enabled(shared::frame_ambient_occlusion) ? ambient : one;
-    Triple<V> radiance =
-        terms.own + terms.direct * lit + terms.ambient * open + terms.specular * specular;
+    const V lit = enabled(shared::frame_shadows) ? signals.shadow : one;
+    const V open = shared::traces_ambient(job_.frame.flags) ? signals.ambient : one;
+    Triple<V> radiance = terms.own + terms.direct * lit + terms.ambient * open +
+                         terms.specular * signals.specular + terms.indirect * signals.indirect;
     // One bad pixel must not spread through the history.
     radiance = select(is_bad(radiance), black(), radiance);
     store4(d_, {radiance.x, radiance.y, radiance.z, one}, row_of<float>(to, y) + 4 * x);

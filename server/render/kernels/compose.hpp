@@ -13,8 +13,8 @@ struct ComposeBindings {
   gpu::Read<Stage> normals, base_color, surface;
   gpu::Read<Stage> layers;  // shaders/lib/scene/layers.glsl, in scenes that have them
   gpu::Read<Stage> motion, emissive, background;
-  gpu::Read<Stage> shadows, ambient, specular;  // noisy
-  gpu::OptionalRead<Stage> denoised_visibility, denoised_specular;
+  gpu::Read<Stage> shadows, ambient, specular, indirect;  // noisy
+  gpu::OptionalRead<Stage> denoised_visibility, denoised_specular, denoised_indirect;
   gpu::Write<Stage> hdr;
   gpu::OptionalWrite<Stage> hdr_noisy;
 };

@@ -1,3 +1,5 @@
+#include <type_traits>
+
 #include "render/kernels/simd/rows.hpp"
 #include "render/kernels/temporal.hpp"
 
@@ -10,32 +12,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
-template <class D>
-class VisibilityFeedback {
+/// `Format`: of the history.
+template <class D, class Job, class Format>
+class Feedback {
  public:
-  HWY_INLINE explicit VisibilityFeedback(const VisibilityFeedbackJob& job) : job_(job) {}
-
-  HWY_INLINE void rows(int first, int last) const {
-    const int lanes = static_cast<int>(hn::Lanes(d_));
-    for (int y = first; y < last; ++y) {
-      for (int i = 0; i < job_.width; i += lanes) {
-        const int x = std::min(i, job_.width - lanes);
-        const auto value = load4(d_, row_of<const float>(job_.filtered, y) + 4 * x);
-        const Rounding<D> rounding(x, y, job_.frame.sample_index);
-        store_history4<Fractions>(d_, value, rounding, job_.history, x, y);
-      }
-    }
-  }
-
- private:
-  const D d_{};
-  const VisibilityFeedbackJob& job_;
-};
-
-template <class D>
-class SpecularFeedback {
- public:
-  HWY_INLINE explicit SpecularFeedback(const SpecularFeedbackJob& job) : job_(job) {}
+  HWY_INLINE explicit Feedback(const Job& job) : job_(job) {}
 
   HWY_INLINE void rows(int first, int last) const {
     const int lanes = static_cast<int>(hn::Lanes(d_));
@@ -43,17 +24,25 @@ class SpecularFeedback {
       for (int i = 0; i < job_.width; i += lanes) {
         const int x = std::min(i, job_.width - lanes);
         auto value = load4(d_, row_of<const float>(job_.filtered, y) + 4 * x);
-        value.w = load_history4<Halves>(d_, job_.fast_history, x, y).w;
+        if constexpr (std::is_same_v<Job, SpecularFeedbackJob>) {
+          // The distance to what is reflected
+          value.w = load_history4<Format>(d_, job_.fast_history, x, y).w;
+        }
         const Rounding<D> rounding(x, y, job_.frame.sample_index);
-        store_history4<Halves>(d_, value, rounding, job_.history, x, y);
+        store_history4<Format>(d_, value, rounding, job_.history, x, y);
       }
     }
   }
 
  private:
   const D d_{};
-  const SpecularFeedbackJob& job_;
+  const Job& job_;
 };
+
+template <class D>
+using VisibilityFeedback = Feedback<D, VisibilityFeedbackJob, Fractions>;
+template <class D>
+using SpecularFeedback = Feedback<D, SpecularFeedbackJob, Halves>;
 
 void feed_visibility_back(const VisibilityFeedbackJob& job, int first, int last) {
   run_rows<VisibilityFeedback>(job, job.width, first, last);

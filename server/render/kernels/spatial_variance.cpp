@@ -10,8 +10,7 @@
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/simd/denoise/moment_rows.hpp"
-#include "render/kernels/simd/edge_stopping.hpp"
-#include "render/kernels/simd/view.hpp"
+#include "render/kernels/simd/denoise/surface_plane.hpp"
 
 #ifndef HELIOGRAPH_SPATIAL_VARIANCE_JOB
 #define HELIOGRAPH_SPATIAL_VARIANCE_JOB
@@ -41,11 +40,7 @@ class SpatialVariance {
   /// All exponents count octaves.
   struct Center {
     Triple<V> normal;
-    V view_z;
-    Pair<V> slope;
-    V curve;      // 1 / Z, 0 in orthographic views
-    V flattened;  // 1 - Z * curve
-    V footprint;  // half of a pixel's
+    SurfacePlane<V> plane;
     V inv_nearby;
   };
   struct Sums {
@@ -55,9 +50,7 @@ class SpatialVariance {
 
  public:
   HWY_INLINE explicit SpatialVariance(const SignalJob& job)
-      : job_(job),
-        visibility_(job.visibility),
-        orthographic_((job.frame.flags & shared::frame_orthographic) != 0) {}
+      : job_(job), visibility_(job.visibility) {}
 
   HWY_INLINE void rows(int first, int last) const {
     const int lanes = static_cast<int>(hn::Lanes(d_));
@@ -88,7 +81,7 @@ class SpatialVariance {
   HWY_INLINE void block(const Rows& rows, const ViewedRow<D>& view, int x, int y, M requested,
                         const Pair<V>& frames) const {
     const Center c = center(rows, view, x, y);
-    requested = hn::And(requested, hn::Gt(c.view_z, hn::Zero(d_)));
+    requested = hn::And(requested, hn::Gt(c.plane.view_z, hn::Zero(d_)));
     if (hn::AllFalse(d_, requested)) return;
     const Sums sums = gathered<false>(rows, c, x, y);
     requested = hn::And(requested, hn::Gt(sums.total, hn::Zero(d_)));
@@ -143,12 +136,9 @@ class SpatialVariance {
     Center c;
     c.normal = {rows.load(texels, Rows::normal_x), rows.load(texels, Rows::normal_y),
                 rows.load(texels, Rows::normal_z)};
-    c.view_z = rows.load(texels, Rows::view_z);
-    c.slope = load2(d_, row_of<const float>(job_.depth_slope, y) + 2 * x);
-    c.curve = orthographic_ ? hn::Zero(d_) : set(1.0f) / hn::Max(c.view_z, set(1e-20f));
-    c.flattened = orthographic_ ? set(1.0f) : hn::Zero(d_);
-    c.footprint = set(0.5f) * view.footprint(c.view_z);
-    c.inv_nearby = set(octaves) / hn::Max(set(nearby_depth) * c.view_z, set(1e-30f));
+    const V z = rows.load(texels, Rows::view_z);
+    c.plane = surface_plane(view, z, load2(d_, row_of<const float>(job_.depth_slope, y) + 2 * x));
+    c.inv_nearby = set(octaves) / hn::Max(set(nearby_depth) * z, set(1e-30f));
     return c;
   }
 
@@ -177,20 +167,14 @@ class SpatialVariance {
         c.normal, Triple<V>{plane(Rows::normal_x), plane(Rows::normal_y), plane(Rows::normal_z)});
     V weight;
     if constexpr (loose) {
-      const V exponent = hn::NegMulAdd(hn::Abs(z - c.view_z), c.inv_nearby, set(weight_one));
+      const V exponent = hn::NegMulAdd(hn::Abs(z - c.plane.view_z), c.inv_nearby, set(weight_one));
       weight = edge_weight(valid, exponent) * hn::Max(cosine, hn::Zero(d_));
     } else {
       const auto x = static_cast<float>(dx), y = static_cast<float>(dy);
-      const V rise = hn::MulAdd(c.slope.x, set(x), c.slope.y * set(y));
-      const V straight = hn::NegMulAdd(rise, c.curve, set(1.0f));
-      const V off_plane =
-          hn::Abs(hn::NegMulAdd(rise, c.flattened, hn::MulSub(z, straight, c.view_z)));
-      const V allowed = hn::MulAdd(c.footprint, set(std::sqrt(x * x + y * y)), hn::Abs(rise));
-      const V inv_allowed =
-          hn::ApproximateReciprocal(hn::Max(allowed * set(1.0f / octaves), set(1e-30f)));
       const V of_normal =
           hn::MulAdd(set(128.0f * octaves), cosine, set(weight_one - 128.0f * octaves));
-      weight = edge_weight(valid, hn::NegMulAdd(off_plane, inv_allowed, of_normal));
+      const V apart = set(std::sqrt(x * x + y * y));
+      weight = edge_weight(valid, c.plane.lowered(of_normal, z, set(x), set(y), apart, 1.0f));
     }
     sums.moments.x = hn::MulAdd(weight, plane(Rows::moment), sums.moments.x);
     sums.moments.y = hn::MulAdd(weight, plane(Rows::moment + 1), sums.moments.y);
@@ -202,7 +186,6 @@ class SpatialVariance {
   const D d_{};
   const SignalJob& job_;
   bool visibility_;
-  bool orthographic_;
 };
 
 void spatial_variance_rows(const SignalJob& job, int first, int last) {

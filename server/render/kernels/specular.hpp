@@ -6,6 +6,7 @@
 #include "render/kernels/common/ray_sink.hpp"
 #include "render/kernels/common/tile.hpp"
 #include "render/resources/host_tables.hpp"
+#include "shaders/shared/radiance_cache.h"
 
 /// Reflections on all processors, in vectors.
 namespace heliograph::render::kernels {
@@ -49,11 +50,16 @@ struct SpecularShadeBindings {
   gpu::Read<Stage> previous_motion;    // rgba32f
   gpu::Read<Stage> previous_instance;  // r32ui
   gpu::Read<Stage> visibility;         // rgba16
+  // With indirect diffuse light:
+  gpu::OptionalReadWriteBuffer<Stage, std::uint32_t> cache_keys;
+  gpu::OptionalReadWriteBuffer<Stage, shared::RadianceCell> cache_cells;
 };
 struct SpecularShadeConstants {
   std::uint32_t lights;         // 0: only the environment lights what is hit
   std::int32_t scale;           // pixels to a texel of `radiance`
   std::uint32_t reuse_shadows;  // of the frame before
+  std::uint32_t padding;
+  shared::RadianceCacheConstants cache;
 };
 struct SpecularShadeJob : FrameJob<SpecularShadeBindings, SpecularShadeConstants> {
   bool layered;  // as above

@@ -103,7 +103,7 @@ class Generation {
   }
 
   HWY_INLINE Float ambient_before(Integer word) const {
-    if (!(frame_.flags & shared::frame_ambient_occlusion)) return one();
+    if (!shared::traces_ambient(frame_.flags)) return one();
     const Unsigned steps = hn::ShiftRight<shared::plan_visibility_shift>(as_unsigned(word));
     return to_float(as_integer(steps)) / number(shared::plan_visibility_steps);
   }
@@ -129,8 +129,8 @@ class Generation {
   }
 
   static HWY_INLINE Float specular_occlusion(Float n_dot_v, Float visibility, Float roughness) {
-    const Float octaves = hn::MulAdd(roughness * roughness, number(-16.0f), number(-1.0f));
-    const Float power = hn::Exp(tag, octaves * number(std::numbers::ln2_v<float>));
+    const Float exponent = hn::MulAdd(roughness * roughness, number(-16.0f), number(-1.0f));
+    const Float power = hn::Exp(tag, exponent * number(std::numbers::ln2_v<float>));
     const Float raised = hn::Exp(tag, hn::Log(tag, n_dot_v + visibility) * power);
     return clamped(raised - one() + visibility, 0.0f, 1.0f);
   }

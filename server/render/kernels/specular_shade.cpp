@@ -12,6 +12,7 @@
 #include "render/kernels/simd/lights.hpp"
 #include "render/kernels/simd/material/hit_material.hpp"
 #include "render/kernels/simd/material/specular_lobe.hpp"
+#include "render/kernels/simd/radiance_cache.hpp"
 #include "render/kernels/simd/tiles.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -24,8 +25,9 @@ class HitShading {
       std::conditional_t<Surface::layered, LayeredMaterial<Float>, SurfaceMaterial<Float>>;
 
  public:
-  explicit HitShading(const SpecularShadeJob& job)
+  HitShading(const SpecularShadeJob& job, CacheReader* cache)
       : job_(job),
+        cache_(cache),
         frame_(job.frame),
         cone_(CameraLanes(job.frame).cone()),
         environment_(job.frame, job.environment),
@@ -34,7 +36,7 @@ class HitShading {
         points_(specular_pairs(job.frame, 6, job.constants.scale)) {}
 
   /// @return how many shadow rays there are, which lie at `shadows`
-  std::size_t block(int first, int last, shared::Ray* shadows) const {
+  std::size_t block(int first, int last, shared::Ray* shadows) {
     const Mask requested = float_mask(hn::Lt(hn::Iota(integer_tag, first), integer(last)));
     const RayLanes ray = load_rays(job_.rays.rays, first, last);
     const PixelLanes pixel = unpack_pixel(ray.pixel);
@@ -58,7 +60,7 @@ class HitShading {
         // Rays stop where it covers, less those that its own colour would let through.
         weight = weight * select(hit.met, one() / (one() - s.passing), one());
       }
-      light = select(hit.met, steady_light(s, m), light);
+      light = select(hit.met, steady_light(s, m, hit.t, ray.pixel, hit.met), light);
       const Mask lit = hn::AndNot(s.has(shared::material_unlit), hit.met);
       if (job_.constants.lights && enabled(shared::frame_direct) && !none(lit)) {
         count = add_lights(ray, weight, s.position, m, cell, lit, shown_shadows(hit, s, lit), light,
@@ -68,6 +70,9 @@ class HitShading {
     store(cell, scrubbed(light * weight), travelled, requested);
     return count;
   }
+
+  /// What the cache is to make, after the last block.
+  std::span<const CacheTouch> touches() const { return touches_; }
 
  private:
   bool enabled(std::uint32_t flag) const { return (frame_.flags & flag) != 0; }
@@ -87,7 +92,23 @@ class HitShading {
   }
 
   /// What of a hit's light needs no ray.
-  HWY_INLINE Float3 steady_light(const Surface& s, const Material& m) const {
+  HWY_INLINE Float3 steady_light(const Surface& s, const Material& m, Float t, Integer order,
+                                 Mask met) {
+    Float3 light = numbers(0.0f);
+    Mask open = hn::AndNot(s.has(shared::material_unlit), met);
+    if (cache_ && !none(open)) {
+      const CachedLanes cached =
+          cached_light(*cache_, s.position, s.geometric, t, order, open, touches_);
+      open = hn::AndNot(cached.known, open);
+      light = reflected_light(m, cached.indirect, environment_, frame_.flags);
+    }
+    if (!none(open)) light = select(open, open_light(m), light);
+    light = select(s.has(shared::material_unlit), s.base_color, light);
+    return enabled(shared::frame_emissive) ? light + s.emissive : light;
+  }
+
+  /// The environment's light as if nothing hid it.
+  HWY_INLINE Float3 open_light(const Material& m) const {
     Float3 light = numbers(0.0f);
     if (enabled(shared::frame_environment_diffuse)) {
       light = wide_albedo(m) * environment_.irradiance(m.normal);
@@ -98,8 +119,7 @@ class HitShading {
       };
       light = light + environment_specular(m, reflection);
     }
-    light = select(s.has(shared::material_unlit), s.base_color, light);
-    return enabled(shared::frame_emissive) ? light + s.emissive : light;
+    return light;
   }
 
   /// Fraction of the lights' radiance that the frame before saw arrive at hits, below 0 where it
@@ -172,6 +192,8 @@ class HitShading {
   }
 
   const SpecularShadeJob& job_;
+  CacheReader* cache_;  // or null
+  std::vector<CacheTouch> touches_;
   const shared::FrameConstants& frame_;
   glm::vec2 cone_;
   EnvironmentLanes environment_;
@@ -181,19 +203,21 @@ class HitShading {
 };
 
 template <class Surface>
-HWY_INLINE void shade_hits_of(const SpecularShadeJob& job, int first, int last) {
-  const HitShading<Surface> shading(job);
+HWY_INLINE void shade_hits_of(const SpecularShadeJob& job, CacheReader* cache, int first,
+                              int last) {
+  HitShading<Surface> shading(job, cache);
   std::array<shared::Ray, ray_batch> shadows;
   std::size_t count = 0;
   for (int i = first; i < last; i += static_cast<int>(hn::Lanes(tag))) {
     count += shading.block(i, last, shadows.data() + count);
   }
   if (count) job.shadows.append({shadows.data(), count});
+  if (cache) cache->add(shading.touches());
 }
 
-void shade_hits_batch(const SpecularShadeJob& job, int first, int last) {
-  if (job.layered) return shade_hits_of<LayeredSurfaceLanes>(job, first, last);
-  shade_hits_of<SurfaceLanes>(job, first, last);
+void shade_hits_batch(const SpecularShadeJob& job, CacheReader* cache, int first, int last) {
+  if (job.layered) return shade_hits_of<LayeredSurfaceLanes>(job, cache, first, last);
+  shade_hits_of<SurfaceLanes>(job, cache, first, last);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE
@@ -205,9 +229,12 @@ namespace heliograph::render::kernels {
 HWY_EXPORT(shade_hits_batch);
 
 void specular_shade(const SpecularShadeJob& job) {
+  CacheReader cache(job.cache_keys, job.cache_cells, job.constants.cache, job.frame.eye);
+  CacheReader* const read = job.cache_keys ? &cache : nullptr;
   for_each_batch(static_cast<int>(job.rays.count->count), [&](int first, int last) {
-    HWY_DYNAMIC_DISPATCH(shade_hits_batch)(job, first, last);
+    HWY_DYNAMIC_DISPATCH(shade_hits_batch)(job, read, first, last);
   });
+  cache.apply();
   job.shadows.end();
 }
 

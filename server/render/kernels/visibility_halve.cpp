@@ -5,8 +5,7 @@
 #define HWY_TARGET_INCLUDE "render/kernels/visibility_halve.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
-#include "render/kernels/simd/edge_stopping.hpp"
-#include "render/kernels/simd/view.hpp"
+#include "render/kernels/simd/denoise/surface_plane.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
@@ -38,9 +37,7 @@ class Halving {
 
  public:
   HWY_INLINE explicit Halving(const VisibilityHalveJob& job)
-      : job_(job),
-        orthographic_((job.frame.flags & shared::frame_orthographic) != 0),
-        halved_width_((job.width + 1) / 2) {}
+      : job_(job), halved_width_((job.width + 1) / 2) {}
 
   HWY_INLINE void rows(int first, int last) const {
     const int lanes = static_cast<int>(hn::Lanes(d_));
@@ -106,19 +103,11 @@ class Halving {
     const Triple<V> a{p.guide.x, p.guide.y, p.guide.z}, b{q.x, q.y, q.z};
     const V sizes = hn::Max(dot(a, a) * dot(b, b), set(1e-24f));
     const V cosine = dot(a, b) * reciprocal_sqrt(sizes);
-    const V z = hn::Max(p.guide.w, set(1e-20f));
-    const V rise = hn::MulAdd(p.slope.x, dx, p.slope.y * dy);
-    const V curve = orthographic_ ? hn::Zero(d_) : reciprocal(z);
-    const V flattened = orthographic_ ? set(1.0f) : hn::Zero(d_);
-    const V straight = hn::NegMulAdd(rise, curve, set(1.0f));
-    const V off_plane = hn::Abs(hn::NegMulAdd(rise, flattened, hn::MulSub(q.w, straight, z)));
-    const V apart = hn::Sqrt(hn::MulAdd(dx, dx, dy * dy));
-    const V allowed = hn::MulAdd(set(0.5f) * view.footprint(z), apart, hn::Abs(rise));
-    const V inv_allowed = hn::ApproximateReciprocal(
-        hn::Max(allowed * set(job_.constants.depth_sigma / octaves), set(1e-30f)));
     const float power = job_.constants.normal_power * octaves;
     const V of_normal = hn::MulAdd(set(power), cosine, set(weight_one - power));
-    return hn::NegMulAdd(off_plane, inv_allowed, of_normal);
+    const V apart = hn::Sqrt(hn::MulAdd(dx, dx, dy * dy));
+    return surface_plane(view, p.guide.w, p.slope)
+        .lowered(of_normal, q.w, dx, dy, apart, job_.constants.depth_sigma);
   }
 
   /// The left and the right pixels of the squares from `x` on, in row `y` of the frame. Where the
@@ -168,7 +157,6 @@ class Halving {
 
   const D d_{};
   const VisibilityHalveJob& job_;
-  bool orthographic_;
   int halved_width_;
 };
 

@@ -5,8 +5,9 @@
 #define HWY_TARGET_INCLUDE "render/kernels/visibility_upsample.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/denoise/surface_plane.hpp"
+#include "render/kernels/simd/guide.hpp"
 #include "render/kernels/simd/signal_rows.hpp"
-#include "render/kernels/simd/view.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
@@ -44,13 +45,12 @@ class HalfRows {
     for (int start = 0; start < width_; start += lanes) {
       const int x = std::min(start, width_ - lanes);
       float* const to = ring_.row(y) + 2 * x;
-      const Quad<V> texel = load4(d_, guide + 4 * x), value = load4(d_, from + 4 * x);
-      const Triple<V> scaled{texel.x, texel.y, texel.z};
-      const V inv_length = reciprocal_sqrt(hn::Max(dot(scaled, scaled), hn::Set(d_, 1e-12f)));
-      store_twice(texel.x * inv_length, to, normal_x);
-      store_twice(texel.y * inv_length, to, normal_y);
-      store_twice(texel.z * inv_length, to, normal_z);
-      store_twice(texel.w, to, view_z);
+      const auto surface = decode_guide(load4(d_, guide + 4 * x));
+      const Quad<V> value = load4(d_, from + 4 * x);
+      store_twice(surface.normal.x, to, normal_x);
+      store_twice(surface.normal.y, to, normal_y);
+      store_twice(surface.normal.z, to, normal_z);
+      store_twice(surface.view_z, to, view_z);
       store_twice(value.x, to, signal);
       store_twice(value.y, to, signal + 1);
       store_twice(value.z, to, signal + 2);
@@ -86,11 +86,7 @@ class Upsampling {
   /// All exponents count octaves.
   struct Center {
     Triple<V> normal;  // times the power
-    V view_z;
-    Pair<V> slope;
-    V curve;      // 1 / Z, 0 in orthographic views
-    V flattened;  // 1 - Z * curve
-    V footprint;  // half of a pixel's
+    SurfacePlane<V> plane;
     V value[2];
     V inv_sigma[2];  // 1 / what a difference of visibility may be
   };
@@ -105,10 +101,7 @@ class Upsampling {
   };
 
  public:
-  HWY_INLINE explicit Upsampling(const VisibilityUpsampleJob& job)
-      : job_(job),
-        c_(job.constants),
-        orthographic_((job.frame.flags & shared::frame_orthographic) != 0) {}
+  HWY_INLINE explicit Upsampling(const VisibilityUpsampleJob& job) : job_(job), c_(job.constants) {}
 
   HWY_INLINE void rows(int first, int last) const {
     const int lanes = static_cast<int>(hn::Lanes(d_));
@@ -161,11 +154,8 @@ class Upsampling {
     c.normal = Triple<V>{rows.load(texels, Rows::normal_x), rows.load(texels, Rows::normal_y),
                          rows.load(texels, Rows::normal_z)} *
                power;
-    c.view_z = rows.load(texels, Rows::view_z);
-    c.slope = load2(d_, row_of<const float>(job_.depth_slope, y) + 2 * x);
-    c.curve = orthographic_ ? hn::Zero(d_) : reciprocal(hn::Max(c.view_z, set(1e-20f)));
-    c.flattened = orthographic_ ? set(1.0f) : hn::Zero(d_);
-    c.footprint = set(0.5f) * view.footprint(c.view_z);
+    c.plane = surface_plane(view, rows.load(texels, Rows::view_z),
+                            load2(d_, row_of<const float>(job_.depth_slope, y) + 2 * x));
     c.value[0] = value.x;
     c.value[1] = value.y;
     for (int i = 0; i < 2; ++i) {
@@ -196,16 +186,9 @@ class Upsampling {
                             set(weight_one - c_.normal_power * octaves));
     exponent = hn::MulAdd(c.normal.y, halves.load(texels, Half::normal_y), exponent);
     exponent = hn::MulAdd(c.normal.z, halves.load(texels, Half::normal_z), exponent);
-    const V rise = hn::MulAdd(c.slope.x, column.offset, c.slope.y * set(dy));
-    const V straight = hn::NegMulAdd(rise, c.curve, set(1.0f));
-    const V off_plane =
-        hn::Abs(hn::NegMulAdd(rise, c.flattened, hn::MulSub(z, straight, c.view_z)));
     const V apart =
         hn::Max(hn::Sqrt(hn::MulAdd(column.offset, column.offset, set(dy * dy))), set(1.0f));
-    const V allowed = hn::MulAdd(c.footprint, apart, hn::Abs(rise));
-    const V inv_allowed =
-        hn::ApproximateReciprocal(hn::Max(allowed * set(c_.depth_sigma / octaves), set(1e-30f)));
-    exponent = hn::NegMulAdd(off_plane, inv_allowed, exponent);
+    exponent = c.plane.lowered(exponent, z, column.offset, set(dy), apart, c_.depth_sigma);
     const V nearness = column.nearness * set(nearness_down);
     for (int i = 0; i < 2; ++i) {
       const V value = halves.load(texels, Half::signal + i);
@@ -229,7 +212,6 @@ class Upsampling {
   const D d_{};
   const VisibilityUpsampleJob& job_;
   const shared::AtrousConstants& c_;
-  bool orthographic_;
 };
 
 /// Vectors are as wide as fits into a row of half size.

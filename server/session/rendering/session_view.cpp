@@ -280,12 +280,10 @@ void SessionView::keep_buffers() {
 /// The path traced reference is not reconstructed: where it is shown alone, frames are smaller.
 void SessionView::set_draw_scale(float scale) {
   const bool reference = state_.settings.reference.use == protocol::ReferenceUse::always;
-  const auto scaled = [&](std::uint32_t side) {
-    const float pixels = static_cast<float>(side) * (reference ? scale : 1.0f);
-    return std::max(1u, static_cast<std::uint32_t>(pixels + 0.5f));
-  };
+  const float of_frame = reference ? scale : 1.0f;
   draw_scale_ = scale;
-  renderer_->set_size(scaled(state_.width), scaled(state_.height));
+  renderer_->set_size(render::drawn_side(state_.width, of_frame),
+                      render::drawn_side(state_.height, of_frame));
   renderer_->set_draw_scale(scale);
 }
 

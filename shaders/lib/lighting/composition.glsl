@@ -14,6 +14,7 @@ layout(set = 1, binding = 6, rgba32f) readonly uniform image2D background;
 layout(set = 1, binding = 7, r32f) readonly uniform image2D shadow_visibility;
 layout(set = 1, binding = 8, r32f) readonly uniform image2D ambient_visibility;
 layout(set = 1, binding = 9, rgba32f) readonly uniform image2D specular_radiance;
+layout(set = 1, binding = 10, rgba32f) readonly uniform image2D indirect_radiance;
 layout(push_constant) uniform Constants { float max_roughness; };  // below 0: nothing was traced
 
 #include "lib/scene/gbuffer_material.glsl"
@@ -27,13 +28,23 @@ struct Composition {
   vec3 direct;   // of the shadow ratio
   vec3 ambient;  // of the ambient visibility
   vec3 specular;   // of the specular signal
+  vec3 indirect;   // of the indirect diffuse light
 };
+
+/// Of what no signal lights.
+Composition without_light(vec3 own) {
+  return Composition(own, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+}
 
 Composition lit_composition(ivec2 pixel, float view_z) {
   SurfaceMaterial m = material_at(pixel);
-  Composition terms = Composition(vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+  Composition terms = without_light(vec3(0.0));
   if (enabled(frame_direct)) terms.direct = direct_light(m, world_position(pixel, view_z));
-  if (enabled(frame_environment_diffuse)) terms.ambient = environment_diffuse(m);
+  if (enabled(frame_indirect)) {
+    terms.indirect = wide_albedo(m);
+  } else if (enabled(frame_environment_diffuse)) {
+    terms.ambient = environment_diffuse(m);
+  }
   if (traces_specular(specular_roughness(m), max_roughness)) {
     terms.specular = specular_demodulator(m);
   } else if (enabled(frame_environment_specular)) {
@@ -46,13 +57,12 @@ Composition lit_composition(ivec2 pixel, float view_z) {
 Composition pixel_composition(ivec2 pixel) {
   float view_z = imageLoad(motion, pixel).w;
   if (view_z <= 0.0) {
-    vec3 behind = imageLoad(background, pixel).rgb;
-    return Composition(behind, vec3(0.0), vec3(0.0), vec3(0.0));
+    return without_light(imageLoad(background, pixel).rgb);
   }
   Composition terms;
   if (is_unlit(pixel)) {
     vec3 root = imageLoad(base_color, pixel).rgb;
-    terms = Composition(root * root, vec3(0.0), vec3(0.0), vec3(0.0));
+    terms = without_light(root * root);
   } else {
     terms = lit_composition(pixel, view_z);
   }
@@ -61,20 +71,23 @@ Composition pixel_composition(ivec2 pixel) {
 }
 
 /// The frame's radiance from its signals. NaN must not spread through the history.
-vec4 composed(Composition terms, vec2 visibility, vec3 specular) {
+vec4 composed(Composition terms, vec2 visibility, vec3 specular, vec3 indirect) {
   float lit = enabled(frame_shadows) ? visibility.x : 1.0;
-  float open = enabled(frame_ambient_occlusion) ? visibility.y : 1.0;
+  float open = traces_ambient(frame.flags) ? visibility.y : 1.0;
   vec3 radiance = terms.own + terms.direct * lit + terms.ambient * open +
-                  terms.specular * specular;
+                  terms.specular * specular + terms.indirect * indirect;
   if (any(isnan(radiance)) || any(isinf(radiance))) radiance = vec3(0.0);
   return vec4(radiance, 1.0);
 }
 
-vec4 composed_of_raw_signals(Composition terms, ivec2 pixel) {
+/// `smooth_indirect`: where there is no sample.
+vec4 composed_of_raw_signals(Composition terms, ivec2 pixel, vec3 smooth_indirect) {
   vec2 visibility =
       vec2(imageLoad(shadow_visibility, pixel).r, imageLoad(ambient_visibility, pixel).r);
   vec3 specular = max_roughness < 0.0 ? vec3(0.0) : imageLoad(specular_radiance, pixel).rgb;
-  return composed(terms, visibility, specular);
+  vec4 sampled = enabled(frame_indirect) ? imageLoad(indirect_radiance, pixel) : vec4(0.0);
+  vec3 indirect = sampled.w < 0.0 ? smooth_indirect : sampled.rgb;
+  return composed(terms, visibility, specular, indirect);
 }
 
 #endif

@@ -12,7 +12,7 @@ float distance_before(uint word) { return uintBitsToFloat(word << 16u); }
 
 /// Ambient visibility of a pixel's surface one frame ago.
 float ambient_before(uint word) {
-  if (!enabled(frame_ambient_occlusion)) return 1.0;
+  if (!traces_ambient(frame.flags)) return 1.0;
   return float(word >> plan_visibility_shift) / plan_visibility_steps;
 }
 

@@ -42,10 +42,11 @@ class KernelComparison {
       const auto histories = render::declare_sample_histories(plan);
       visibility_.push_back(
           render::accumulate_visibility(plan, in, guide, histories, raw_visibility_));
-      specular_.push_back(
-          render::accumulate_specular(plan, in, gbuffer, guide, histories, raw_specular_));
+      specular_.push_back(render::accumulate_radiance(
+          plan, in, gbuffer, guide, render::specular_channel(in, histories), raw_specular_));
       render::estimate_visibility_variance(plan, in, gbuffer, guide, visibility_.back());
-      render::estimate_specular_variance(plan, in, gbuffer, guide, specular_.back());
+      render::estimate_radiance_variance(plan, in, gbuffer, guide,
+                                         render::specular_channel(in, histories), specular_.back());
     }
   }
 

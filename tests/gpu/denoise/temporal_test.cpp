@@ -181,7 +181,8 @@ class TemporalAccumulation : public testing::Test {
     const auto histories = render::declare_sample_histories(plan);
     accumulated_ =
         specular
-            ? render::accumulate_specular(plan, rig_->inputs(), gbuffer, guide, histories, raw_)
+            ? render::accumulate_radiance(plan, rig_->inputs(), gbuffer, guide,
+                                          render::specular_channel(rig_->inputs(), histories), raw_)
             : render::accumulate_visibility(plan, rig_->inputs(), guide, histories, raw_);
   }
   /// One frame of a static view with signal `values`.

@@ -6,6 +6,7 @@
 #include "render/kernels/visibility_half.hpp"
 #include "render/passes/formats.hpp"
 #include "shaders/embedded.hpp"
+#include "tests/gpu/support/kernel_comparison.hpp"
 #include "tests/support/frame_rig.hpp"
 
 namespace heliograph::test {
@@ -123,14 +124,9 @@ class HalfRig {
 void expect_near(const render::FloatImage& expected, const render::FloatImage& actual, double most,
                  const std::string& which) {
   ASSERT_EQ(expected.rgba.size(), actual.rgba.size()) << which;
-  double mean = 0.0, max = 0.0;
-  for (std::size_t i = 0; i < expected.rgba.size(); ++i) {
-    const double off = std::abs(static_cast<double>(expected.rgba[i]) - actual.rgba[i]);
-    mean += std::isfinite(off) ? off : 1e9;
-    max = std::max(max, off);
-  }
-  EXPECT_LT(mean / static_cast<double>(expected.rgba.size()), 0.02 * most) << which;
-  EXPECT_LT(max, most) << which;
+  const ErrorStatistics off = compare(expected, actual);
+  EXPECT_LT(off.mean, 0.02 * most) << which;
+  EXPECT_LT(off.max, most) << which;
 }
 
 TEST(VisibilityHalfKernels, MatchShaders) {
@@ -152,10 +148,10 @@ TEST(VisibilityHalfKernels, MatchShaders) {
         const auto same = [&](gpu::ImageRef HalfRig::Images::*image, double most) {
           expect_near(rig.read(rig.by_shader.*image), rig.read(rig.by_host.*image), most, which);
         };
-        same(&HalfRig::Images::guide, 1e-6);
-        same(&HalfRig::Images::slope, 1e-6);
-        same(&HalfRig::Images::signal, 5e-3);
-        same(&HalfRig::Images::denoised, 5e-3);
+        same(&HalfRig::Images::guide, 1e-7);
+        same(&HalfRig::Images::slope, 1e-7);
+        same(&HalfRig::Images::signal, 2.5e-3);
+        same(&HalfRig::Images::denoised, 2.5e-3);
       }
     }
   }

@@ -49,6 +49,14 @@ TEST_F(HostFrame, SubmitsNothingWithDefaultSettings) {
   EXPECT_EQ(rig->plan().read().size(), 4u * 48 * 32);
 }
 
+TEST_F(HostFrame, SubmitsNothingWithIndirectLight) {
+  protocol::Settings settings;
+  settings.indirect.enabled = true;
+  const auto rig = frame(settings);
+  EXPECT_EQ(rig->plan().submits(), 0u);
+  EXPECT_TRUE(passes_that_ran(*rig).contains("indirect.atrous.0"));
+}
+
 TEST_F(HostFrame, SubmitsNothingWithAutomaticExposure) {
   protocol::Settings settings;
   settings.exposure.mode = protocol::ExposureMode::automatic;

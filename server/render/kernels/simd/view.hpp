@@ -41,6 +41,8 @@ class ViewedRow {
                 frame.unproject.y +
             frame.unproject.w) {}
 
+  bool orthographic() const { return orthographic_; }
+
   /// View-space position of the samples of pixels from `x` on.
   HWY_INLINE Triple<V> view_position(int x, V view_z) const {
     const float scale = 2.0f / static_cast<float>(frame_.extent.x);

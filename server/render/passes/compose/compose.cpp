@@ -19,10 +19,12 @@ Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbu
   // Every binding has to hold an image: reflections that are not traced are not read.
   const bool reflects = signals.specular.has_value();
   const gpu::ImageRef specular = signals.specular.value_or(background);
-  std::optional<gpu::ImageRef> denoised_visibility, denoised_specular, noisy;
+  const gpu::ImageRef indirect = signals.indirect.value_or(background);
+  std::optional<gpu::ImageRef> denoised_visibility, denoised_specular, denoised_indirect, noisy;
   if (denoised) {
     denoised_visibility = denoised->visibility;
     denoised_specular = denoised->specular.value_or(specular);
+    denoised_indirect = denoised->indirect.value_or(indirect);
     noisy = composed.noisy;
   }
   const auto& shader = denoised ? shaders::compose_denoised : shaders::compose;
@@ -37,8 +39,10 @@ Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbu
                                        .shadows = signals.shadows,
                                        .ambient = signals.ambient,
                                        .specular = specular,
+                                       .indirect = indirect,
                                        .denoised_visibility = denoised_visibility,
                                        .denoised_specular = denoised_specular,
+                                       .denoised_indirect = denoised_indirect,
                                        .hdr = composed.hdr,
                                        .hdr_noisy = noisy})
       .constants([&s = in.settings.specular, reflects] {

@@ -18,12 +18,14 @@ struct NoisySignals {
   gpu::ImageRef shadows;                  // r32f
   gpu::ImageRef ambient;                  // r32f
   std::optional<gpu::ImageRef> specular;  // rgba32f; without it the environment is reflected
+  std::optional<gpu::ImageRef> indirect;  // rgba32f; without it the environment shines around
 };
 
 /// The same without noise; a signal that is not denoised stands here as it is.
 struct DenoisedSignals {
   gpu::ImageRef visibility;               // rgba32f: shadow x, ambient y
   std::optional<gpu::ImageRef> specular;  // rgba32f
+  std::optional<gpu::ImageRef> indirect;  // rgba32f
 };
 
 /// Linear radiance.

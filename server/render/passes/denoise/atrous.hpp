@@ -54,6 +54,22 @@ inline constexpr AtrousBuffers specular_atrous_buffers{
      .colors = ViewColors::radiance,
      .description = "Denoised reflections, demodulated; variance of their brightness (w).",
      .aspects = specular_denoised_aspects}};
+inline constexpr std::array indirect_denoised_aspects{
+    Aspect{"noise", ViewColors::deviation, 1, one_channel<3>,
+           "Standard deviation of the indirect light's brightness that the blur leaves; captured: "
+           "variance."}};
+inline constexpr AtrousBuffers indirect_atrous_buffers{
+    {"indirect.blur.even", ViewColors::radiance,
+     "Indirect diffuse light after an iteration of the blur."},
+    {"indirect.blur.odd", ViewColors::radiance,
+     "Indirect diffuse light after an iteration of the blur."},
+    {"indirect.blur.half", ViewColors::radiance,
+     "Indirect diffuse light after the first half of a separable iteration of the blur."},
+    {.name = "indirect.denoised",
+     .colors = ViewColors::radiance,
+     .description =
+         "Denoised indirect diffuse light, without albedo; variance of its brightness (w).",
+     .aspects = indirect_denoised_aspects}};
 
 /// Images of one size: what is blurred and what guides it.
 struct AtrousInput {

@@ -73,14 +73,15 @@ gpu::ImageRef denoise_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
   const bool tone_compressed = in.settings.reinhard.mode != protocol::Reinhard::off;
 
   gpu::ImageRef signal = tone_compressed ? compress(plan, in, noisy) : noisy;
+  const RadianceChannel channel = specular_channel(in, histories);
   const AccumulatedSignal accumulated =
-      accumulate_specular(plan, in, gbuffer, guide, histories, signal);
+      accumulate_radiance(plan, in, gbuffer, guide, channel, signal);
   signal = accumulated.signal;
   if (blurring.enabled) {
     const auto feed_back = [&](gpu::ImageRef filtered) {
-      feed_specular_back(plan, in, accumulated, filtered);
+      feed_radiance_back(plan, in, channel, accumulated, filtered);
     };
-    estimate_specular_variance(plan, in, gbuffer, guide, accumulated);
+    estimate_radiance_variance(plan, in, gbuffer, guide, channel, accumulated);
     signal = blur(plan, in, {guide.surface, gbuffer.depth_slope, accumulated.signal},
                   specular_atrous_config(in),
                   feedback ? std::optional(Feedback{blurring.feedback, feed_back}) : std::nullopt);

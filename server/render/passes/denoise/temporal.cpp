@@ -110,27 +110,26 @@ AccumulatedSignal accumulate_visibility(gpu::FramePlan& plan, const FrameInputs&
   return {signal, moments.current, history_length.current, fast_history.current, history.current};
 }
 
-AccumulatedSignal accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in,
+AccumulatedSignal accumulate_radiance(gpu::FramePlan& plan, const FrameInputs& in,
                                       const GBuffer& gbuffer, const Guide& guide,
-                                      const SampleHistories& histories, gpu::ImageRef noisy) {
-  const auto& buffers = specular_temporal_buffers;
-  const gpu::History history = histories.specular;
-  const gpu::History history_length = histories.specular_length;
+                                      const RadianceChannel& channel, gpu::ImageRef noisy) {
+  const RadianceTemporalBuffers& buffers = channel.buffers;
+  const gpu::History history = channel.history;
+  const gpu::History history_length = channel.history_length;
   const gpu::ImageRef signal = plan.image(buffers.signal.name, four_floats);
-  const auto& settings = in.settings.specular_temporal;
+  const auto& settings = channel.settings;
   const gpu::History fast_history = declare_fast_history(plan, buffers.fast_history, four_halves,
                                                          settings.rectification, history.previous);
-  const auto constants = [in, &settings] {
+  const auto constants = [in, &settings, flags = channel.flags] {
     shared::TemporalConstants made = temporal_constants(in, settings);
-    if (settings.virtual_motion) made.flags |= shared::temporal_virtual_motion;
-    if (settings.curved_reflectors) made.flags |= shared::temporal_curved_reflectors;
+    made.flags |= flags();
     return made;
   };
   const gpu::ImageRef percentiles =
       measure_percentiles(plan, guide, noisy, buffers.percentiles,
                           in.program(shaders::specular_percentiles), settings.rectification);
 
-  plan.pass("specular.temporal", in.program(shaders::specular_temporal))
+  plan.pass(channel.name + ".temporal", in.program(shaders::specular_temporal))
       .bind<kernels::TemporalSpecularBindings>({.noisy = noisy,
                                                 .guide = guide.surface,
                                                 .instance = gbuffer.instance,
@@ -152,7 +151,7 @@ AccumulatedSignal accumulate_specular(gpu::FramePlan& plan, const FrameInputs& i
       .host(kernels::specular_temporal, in.constants)
       .host_when(kernels_know(settings.rectification));
   if (rectifies_after(settings.rectification)) {
-    plan.pass("specular.rectify", in.program(shaders::specular_rectify))
+    plan.pass(channel.name + ".rectify", in.program(shaders::specular_rectify))
         .bind<kernels::RectifyBindings>({.guide = guide.surface,
                                          .fast_history = fast_history.current,
                                          .signal = signal,
@@ -170,6 +169,29 @@ AccumulatedSignal accumulate_specular(gpu::FramePlan& plan, const FrameInputs& i
           history.current};
 }
 
+RadianceChannel specular_channel(const FrameInputs& in, const SampleHistories& histories) {
+  const auto& settings = in.settings.specular_temporal;
+  return {"specular",
+          specular_temporal_buffers,
+          settings,
+          histories.specular,
+          histories.specular_length,
+          [&settings] {
+            return (settings.virtual_motion ? shared::temporal_virtual_motion : 0u) |
+                   (settings.curved_reflectors ? shared::temporal_curved_reflectors : 0u);
+          }};
+}
+
+RadianceChannel indirect_channel(gpu::FramePlan& plan, const FrameInputs& in) {
+  const auto& buffers = indirect_temporal_buffers;
+  return {"indirect",
+          buffers,
+          in.settings.indirect_temporal,
+          plan.history(buffers.history.name, four_halves),
+          plan.history(buffers.history_length.name, four_halves),
+          [] { return 0u; }};
+}
+
 void feed_visibility_back(gpu::FramePlan& plan, const FrameInputs& in,
                           const AccumulatedSignal& visibility, gpu::ImageRef filtered) {
   plan.pass("visibility.feedback", in.program(shaders::visibility_feedback))
@@ -179,9 +201,9 @@ void feed_visibility_back(gpu::FramePlan& plan, const FrameInputs& in,
       .host(kernels::visibility_feedback, in.constants);
 }
 
-void feed_specular_back(gpu::FramePlan& plan, const FrameInputs& in,
+void feed_radiance_back(gpu::FramePlan& plan, const FrameInputs& in, const RadianceChannel& channel,
                         const AccumulatedSignal& specular, gpu::ImageRef filtered) {
-  plan.pass("specular.feedback", in.program(shaders::specular_feedback))
+  plan.pass(channel.name + ".feedback", in.program(shaders::specular_feedback))
       .bind<kernels::SpecularFeedbackBindings>({.filtered = filtered,
                                                 .fast_history = specular.fast_history,
                                                 .history = specular.history})
@@ -193,7 +215,7 @@ namespace {
 
 gpu::PassBuilder variance_pass(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                                const Guide& guide, const AccumulatedSignal& accumulated,
-                               std::optional<gpu::ImageRef> history, const char* name,
+                               std::optional<gpu::ImageRef> history, const std::string& name,
                                gpu::ProgramSource program, const auto& settings) {
   gpu::PassBuilder pass = plan.pass(name, std::move(program));
   pass.bind<kernels::SpatialVarianceBindings>({.guide = guide.surface,
@@ -218,10 +240,11 @@ void estimate_visibility_variance(gpu::FramePlan& plan, const FrameInputs& in,
       .host(kernels::visibility_variance, in.constants);
 }
 
-void estimate_specular_variance(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                                const Guide& guide, const AccumulatedSignal& specular) {
-  variance_pass(plan, in, gbuffer, guide, specular, std::nullopt, "specular.variance",
-                in.program(shaders::specular_variance), in.settings.specular_temporal)
+void estimate_radiance_variance(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                                const Guide& guide, const RadianceChannel& channel,
+                                const AccumulatedSignal& radiance) {
+  variance_pass(plan, in, gbuffer, guide, radiance, std::nullopt, channel.name + ".variance",
+                in.program(shaders::specular_variance), channel.settings)
       .host(kernels::specular_variance, in.constants);
 }
 

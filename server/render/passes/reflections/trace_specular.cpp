@@ -85,6 +85,7 @@ struct Hits {
   gpu::BufferRef hits;
   tracing::RayStream shadows;
   ShownBefore before;
+  std::optional<RadianceCache> cache;
 };
 
 /// Shades the hits; makes the shadow rays toward their lights.
@@ -92,7 +93,10 @@ void shade(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer, 
            const Target& target) {
   const std::uint32_t features = in.scene.features;
   begin_rays(plan, in, hits.name + ".shadows", hits.shadows);
-  plan.pass(hits.name + ".shade", in.program(shaders::specular_shade, features))
+  const auto& shader = hits.cache ? shaders::specular_shade_indirect : shaders::specular_shade;
+  std::optional<gpu::BufferRef> keys, cells;
+  if (hits.cache) keys = hits.cache->keys, cells = hits.cache->cells;
+  plan.pass(hits.name + ".shade", in.program(shader, features))
       .bind<kernels::SpecularShadeBindings>({.surface = gbuffer.surface,
                                              .motion = gbuffer.motion,
                                              .rays = ray_source(hits.rays),
@@ -101,13 +105,16 @@ void shade(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer, 
                                              .radiance = target.radiance,
                                              .previous_motion = gbuffer.previous_motion,
                                              .previous_instance = gbuffer.previous_instance,
-                                             .visibility = hits.before.visibility})
+                                             .visibility = hits.before.visibility,
+                                             .cache_keys = keys,
+                                             .cache_cells = cells})
       .constants([in, scale = target.scale, known = hits.before.known] {
         const auto& s = in.settings.specular;
         return kernels::SpecularShadeConstants{
             s.hit_shading == protocol::HitShading::traced, scale,
             known && s.reuse_shadows && leaves_visibility_out(in) &&
-                (in.constants.flags & shared::frame_shadows) != 0};
+                (in.constants.flags & shared::frame_shadows) != 0,
+            0, cache_constants(in)};
       })
       .dispatch_indirect(hits.rays.count, ray_groups_offset)
       .host([in](const kernels::SpecularShadeJob::Pass& pass) {
@@ -136,13 +143,13 @@ void resolve_lights(gpu::FramePlan& plan, const FrameInputs& in, const std::stri
 
 void trace_and_shade(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
                      const tracing::RayStream& rays, const GBuffer& gbuffer, const Target& target,
-                     const ShownBefore& before) {
+                     const ShownBefore& before, const std::optional<RadianceCache>& cache) {
   const auto hits = plan.buffer(name + ".hits", sizeof(shared::Hit) * rays.capacity, storage,
                                 gpu::Memory::device);
   in.tracer.trace_closest(plan, name + ".trace", in.structure, rays, hits);
   const auto shadows =
       declare_rays(plan, name + ".shadows", rays.capacity, tracing::RayKind::hit_shadow);
-  shade(plan, in, gbuffer, {name, rays, hits, shadows, before}, target);
+  shade(plan, in, gbuffer, {name, rays, hits, shadows, before, cache}, target);
   resolve_lights(plan, in, name, shadows, target);
 }
 
@@ -167,13 +174,14 @@ gpu::ImageRef upsample(gpu::FramePlan& plan, const FrameInputs& in, const GBuffe
 
 gpu::ImageRef trace_specular(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                              std::optional<gpu::ImageRef> planned,
-                             std::optional<gpu::ImageRef> visibility) {
+                             std::optional<gpu::ImageRef> visibility,
+                             const std::optional<RadianceCache>& cache) {
   const Target target = make_target(plan, in.settings.specular.half_resolution);
   if (target.directions) planned.reset();
   const ShownBefore before = shown_before(plan, "specular", visibility);
   for (const kernels::Rows rows : ray_strips(plan, target.size.of(plan.extent()))) {
     const auto rays = generate_rays(plan, in, gbuffer, target, rows, planned);
-    trace_and_shade(plan, in, "specular", rays, gbuffer, target, before);
+    trace_and_shade(plan, in, "specular", rays, gbuffer, target, before, cache);
   }
   return target.directions ? upsample(plan, in, gbuffer, target) : target.radiance;
 }
@@ -185,7 +193,7 @@ void trace_reflections(gpu::FramePlan& plan, const FrameInputs& in, const std::s
   reflecting.surface = surface;
   reflecting.motion = distance;
   trace_and_shade(plan, in, name, rays, reflecting, {radiance, {}, gpu::each_pixel(), 1},
-                  shown_before(plan, name, {}));
+                  shown_before(plan, name, {}), {});
 }
 
 void add_unoccluded_light(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "render/passes/gbuffer/gbuffer.hpp"
+#include "render/passes/indirect/radiance_cache.hpp"
 #include "tracing/ray_tracer.hpp"
 
 namespace heliograph::render {
@@ -32,10 +33,12 @@ inline constexpr struct SpecularBuffers {
 /// specular albedo (rgb), and how far the ray went (w, metres; 10 km where it met nothing, 0 where
 /// there was none). Where a sampling plan is `planned` and leaves a pixel out, w is the distance of
 /// the frame before, negated. `visibility` of the frame before, shadow in x, takes the place of
-/// shadow rays from hits that it showed.
+/// shadow rays from hits that it showed. With a `cache` hits take their indirect light from it,
+/// otherwise the environment's as if nothing hid it.
 gpu::ImageRef trace_specular(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                              std::optional<gpu::ImageRef> planned = {},
-                             std::optional<gpu::ImageRef> visibility = {});
+                             std::optional<gpu::ImageRef> visibility = {},
+                             const std::optional<RadianceCache>& cache = {});
 
 /// Radiance along `rays` of surfaces before those of the G-buffer `behind`, each with its weight:
 /// stored in `radiance` at the rays' pixels. `surface` holds the roughness that they come from,

@@ -23,18 +23,18 @@ class VisibilityTrace {
 
   gpu::ImageRef visibility() const { return visibility_; }
 
-  /// Calls `generate(pass, rays, rows)` to complete the passes that make the rays, in frames with
-  /// `flag`. Without rays a stream stays empty and tracing it costs nothing.
+  /// Calls `generate(pass, rays, rows)` to complete the passes that make the rays, in frames whose
+  /// flags say so. Without rays a stream stays empty and tracing it costs nothing.
   template <class Generate>
-  gpu::ImageRef trace(const gpu::ProgramSource& program, std::uint32_t flag,
+  gpu::ImageRef trace(const gpu::ProgramSource& program, bool (*traced)(std::uint32_t flags),
                       const Generate& generate) {
     for (const kernels::Rows rows : ray_strips(plan_, plan_.extent())) {
       const auto height = static_cast<std::uint32_t>(rows.bottom - rows.top);
       const auto rays = declare_rays(plan_, name_, plan_.extent().width * height, kind_);
       begin_rays(plan_, in_, name_, rays);
       gpu::PassBuilder pass = plan_.pass(name_ + ".rays", program);
-      pass.dispatch(gpu::each_pixel()).when([&constants = in_.constants, flag] {
-        return (constants.flags & flag) != 0;
+      pass.dispatch(gpu::each_pixel()).when([&constants = in_.constants, traced] {
+        return traced(constants.flags);
       });
       generate(pass, rays, rows);
       resolve(rays);
@@ -60,6 +60,10 @@ class VisibilityTrace {
   tracing::RayKind kind_;
   gpu::ImageRef visibility_;
 };
+
+bool traces_shadows(std::uint32_t flags) {
+  return (flags & shared::frame_shadows) != 0;
+}
 
 auto ray_constants(const FrameInputs& in, bool planned) {
   return
@@ -88,7 +92,7 @@ gpu::ImageRef trace_shadows(gpu::FramePlan& plan, const FrameInputs& in, const G
                                  in.lobe_tables(), rows});
         });
   };
-  return trace.trace(in.program(shaders::shadows_rays, in.scene.features), shared::frame_shadows,
+  return trace.trace(in.program(shaders::shadows_rays, in.scene.features), traces_shadows,
                      generate);
 }
 
@@ -107,7 +111,7 @@ gpu::ImageRef trace_ambient(gpu::FramePlan& plan, const FrameInputs& in, const G
           kernels::ambient_rays({job, in.constants, rows});
         });
   };
-  return trace.trace(in.program(shaders::ambient_rays), shared::frame_ambient_occlusion, generate);
+  return trace.trace(in.program(shaders::ambient_rays), shared::traces_ambient, generate);
 }
 
 }  // namespace heliograph::render

@@ -104,11 +104,10 @@ class Channels {
 };
 
 /// Reads rgba16f images (as Halves or MeanAndDeviation) and rgba16 images (as Fractions) of the
-/// frame before. Pixels
-/// that moved together lie side by side there and are read in vectors of their channels. Where they
-/// moved by different amounts, vectors of pixels would have to gather each channel of each tap:
-/// there a vector holds the channels of one, and pixels take turns. Images must be finite, for taps
-/// without a weight are read, too.
+/// frame before. Pixels that moved together lie side by side there and are read in vectors of their
+/// channels. Where they moved by different amounts, vectors of pixels would have to gather each
+/// channel of each tap: there a vector holds the channels of one, and pixels take turns. Images
+/// must be finite, for taps without a weight are read, too.
 template <class D>
 class HistoryReader {
   using V = hn::Vec<D>;

@@ -13,12 +13,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
-/// Half floats, as in rgba16f images.
-struct Halves {
-  template <class D, class D16 = hn::Rebind<std::uint16_t, D>>
-  static HWY_INLINE hn::Vec<D> widened(D d, hn::Vec<D16> texels) {
-    return hn::PromoteTo(d, hn::BitCast(hn::Rebind<hwy::float16_t, D>(), texels));
-  }
+/// Texels that add up as they are.
+struct LinearTexels {
   /// What can be added up, of whole texels with their channels side by side.
   template <class D, class V = hn::Vec<D>>
   static HWY_INLINE V linear(D, V texels) {
@@ -27,6 +23,14 @@ struct Halves {
   template <class V>
   static HWY_INLINE Quad<V> linear(const Quad<V>& texels) {
     return texels;
+  }
+};
+
+/// Half floats, as in rgba16f images.
+struct Halves : LinearTexels {
+  template <class D, class D16 = hn::Rebind<std::uint16_t, D>>
+  static HWY_INLINE hn::Vec<D> widened(D d, hn::Vec<D16> texels) {
+    return hn::PromoteTo(d, hn::BitCast(hn::Rebind<hwy::float16_t, D>(), texels));
   }
   /// What scales linear combinations of widened channels.
   static constexpr float unit = 1.0f;
@@ -55,18 +59,10 @@ struct MeanAndDeviation : Halves {
 };
 
 /// 0 to 1 in steps of 1 / 65535, as in rgba16 images.
-struct Fractions {
+struct Fractions : LinearTexels {
   template <class D, class D16 = hn::Rebind<std::uint16_t, D>>
   static HWY_INLINE hn::Vec<D> widened(D d, hn::Vec<D16> texels) {
     return hn::ConvertTo(d, hn::PromoteTo(hn::RebindToSigned<D>(), texels));
-  }
-  template <class D, class V = hn::Vec<D>>
-  static HWY_INLINE V linear(D, V texels) {
-    return texels;
-  }
-  template <class V>
-  static HWY_INLINE Quad<V> linear(const Quad<V>& texels) {
-    return texels;
   }
   static constexpr float unit = 1.0f / 65535.0f;
 };

@@ -1,0 +1,93 @@
+#include "render/kernels/indirect/radiance_cache.hpp"
+#include "render/kernels/simd/rows.hpp"
+#include "shaders/shared/sampling.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/kernels/indirect/indirect_rays.cpp"
+#include "hwy/foreach_target.h"
+// After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/random.hpp"
+#include "render/kernels/simd/rays.hpp"
+#include "render/kernels/simd/tiles.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::kernels::HWY_NAMESPACE {
+
+class IndirectRays {
+ public:
+  explicit IndirectRays(const IndirectRaysJob& job)
+      : job_(job),
+        camera_(job.frame),
+        directions_(unsigned_tag, job.frame.sample_index, 3u, job.frame.seed) {}
+
+  HWY_INLINE void generate(const Tile& tile) const {
+    PixelList traced;
+    for_each_row(tile, [&](const TileRow& row) {
+      const Mask seen = hn::Gt(row_last(job_.motion, row), zero());
+      const Mask sampled = is_sampled(row);
+      traced.add(row.pixels, hn::And(row.inside, hn::And(seen, sampled)));
+      const Mask left_out = hn::AndNot(sampled, seen);
+      put_row(job_.radiance, row,
+              Float4{zero(), zero(), zero(), select(left_out, number(-1.0f), one())});
+    });
+    RayBatch made;
+    for (int i = 0; i < traced.size(); i += static_cast<int>(hn::Lanes(tag))) {
+      Mask requested;
+      const PixelLanes pixels = traced.from(i, requested);
+      const RayLanes ray = ray_of(pixels, requested);
+      made.add(ray, requested);
+    }
+    made.append_to(job_.rays);
+  }
+
+ private:
+  HWY_INLINE Mask is_sampled(const TileRow& row) const {
+    if (job_.constants.by_plan == 0) return hn::Eq(zero(), zero());
+    const Integer bit = hn::And(row_words(job_.planned, row), integer(shared::plan_ambient));
+    return float_mask(hn::Ne(bit, integer(0)));
+  }
+
+  /// Directions below the surface are not `requested`.
+  HWY_INLINE RayLanes ray_of(const PixelLanes& pixels, Mask& requested) const {
+    const Float view_z = gathered_last(job_.motion, pixels);
+    const Float4 encoded = gathered4(job_.normals, pixels);
+    const Float3 geometric = octahedral_decode(encoded.z, encoded.w);
+    Float u, v;
+    directions_.at(as_unsigned(pixels.x), as_unsigned(pixels.y), u, v);
+    RayLanes ray;
+    ray.direction = sample_cosine(octahedral_decode(encoded.x, encoded.y), u, v);
+    ray.origin = offset_origin(camera_.world_position(pixels, view_z), geometric, view_z);
+    ray.t_min = zero();
+    ray.t_max = number(1e30f);
+    ray.pixel = pack_pixel(pixels);
+    ray.user = numbers(0.0f);
+    requested = hn::And(requested, hn::Gt(dot(ray.direction, geometric), zero()));
+    return ray;
+  }
+
+  const IndirectRaysJob& job_;
+  CameraLanes camera_;
+  RandomPairs<UnsignedTag> directions_;
+};
+
+void indirect_ray_tile(const IndirectRaysJob& job, const Tile& tile) {
+  IndirectRays(job).generate(tile);
+}
+
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace heliograph::render::kernels {
+
+HWY_EXPORT(indirect_ray_tile);
+
+void indirect_rays(const IndirectRaysJob& job) {
+  for_each_tile(job.width, job.rows.within(job.height), [&](const Tile& tile) {
+    HWY_DYNAMIC_DISPATCH(indirect_ray_tile)(job, tile);
+  });
+  job.rays.end();
+}
+
+}  // namespace heliograph::render::kernels
+#endif

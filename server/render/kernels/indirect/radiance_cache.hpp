@@ -1,0 +1,145 @@
+#pragma once
+
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "render/kernels/common/frame_job.hpp"
+#include "render/kernels/common/ray_sink.hpp"
+#include "render/kernels/common/tile.hpp"
+#include "render/resources/host_tables.hpp"
+#include "shaders/shared/radiance_cache.h"
+
+/// The radiance cache on all processors: shaders/lib/lighting/radiance_cache.glsl and the passes
+/// that update it.
+namespace heliograph::render::kernels {
+
+/// A cell that a ray has asked for: made if there is none, or moved to the place of the ray's hit.
+struct CacheTouch {
+  std::uint32_t priority;  // random: of several places the one with the highest
+  std::uint32_t order;     // of the ray, so that the outcome does not depend on threads
+  std::uint32_t first;     // slot of its bucket
+  std::uint32_t check;
+  glm::vec3 position;
+  glm::vec3 normal;
+};
+
+/// Irradiance / pi.
+struct CachedLight {
+  glm::vec3 direct{0.0f};
+  glm::vec3 indirect{0.0f};
+  bool known = false;
+};
+
+/// The cache as a pass of one frame reads it. What the pass asks for and does not find is written
+/// down and made after it, in the order of rays.
+class CacheReader {
+ public:
+  CacheReader(std::uint32_t* keys, shared::RadianceCell* cells,
+              const shared::RadianceCacheConstants& constants, const glm::vec3& eye)
+      : keys_(keys), cells_(cells), constants_(constants), eye_(eye) {}
+
+  /// Of the cell at `position` with the geometric `normal`, world, for a ray of length `t`, metres.
+  /// `touches` gets the cells that are to be made or moved. Thread safe.
+  CachedLight find(const glm::vec3& position, const glm::vec3& normal, float t, std::uint32_t order,
+                   std::vector<CacheTouch>& touches) const;
+  /// Thread safe.
+  void add(std::span<const CacheTouch> touches);
+  /// After all threads are done.
+  void apply();
+
+ private:
+  std::uint32_t* keys_;
+  shared::RadianceCell* cells_;
+  shared::RadianceCacheConstants constants_;
+  glm::vec3 eye_;
+  std::mutex mutex_;
+  std::vector<CacheTouch> touches_;
+};
+
+/// shaders/indirect/radiance_cache_rays.comp
+template <class Stage>
+struct RadianceCacheRaysBindings {
+  gpu::ReadWriteBuffer<Stage, std::uint32_t> keys;
+  gpu::ReadWriteBuffer<Stage, shared::RadianceCell> cells;
+  RaySink<Stage> rays;
+  RaySink<Stage> shadows;  // toward lights
+};
+struct RadianceCacheRaysJob : FrameJob<RadianceCacheRaysBindings, shared::RadianceCacheConstants> {
+  std::span<const shared::Light> lights;
+  LobeTables tables;
+};
+void radiance_cache_rays(const RadianceCacheRaysJob& job);
+
+/// shaders/indirect/radiance_cache_shade.comp
+template <class Stage>
+struct RadianceCacheShadeBindings {
+  RaySource<Stage> rays;
+  gpu::ReadBuffer<Stage, shared::Hit> hits;
+  gpu::ReadWriteBuffer<Stage, std::uint32_t> keys;
+  gpu::ReadWriteBuffer<Stage, shared::RadianceCell> cells;
+};
+struct RadianceCacheShadeJob
+    : FrameJob<RadianceCacheShadeBindings, shared::RadianceCacheConstants> {
+  bool layered;  // materials of the scene have layers
+  SceneView scene;
+  const Environment& environment;
+  LobeTables tables;
+};
+void radiance_cache_shade(const RadianceCacheShadeJob& job);
+
+/// shaders/indirect/radiance_cache_light.comp
+template <class Stage>
+struct RadianceCacheLightBindings {
+  RaySource<Stage> shadows;
+  gpu::ReadBuffer<Stage, std::uint32_t> occluded;
+  gpu::ReadWriteBuffer<Stage, shared::RadianceCell> cells;
+};
+using RadianceCacheLightJob = gpu::HostPass<RadianceCacheLightBindings>;
+void radiance_cache_light(const RadianceCacheLightJob& job);
+
+/// shaders/indirect/radiance_cache_blend.comp
+template <class Stage>
+struct RadianceCacheBlendBindings {
+  gpu::ReadWriteBuffer<Stage, std::uint32_t> keys;
+  gpu::ReadWriteBuffer<Stage, shared::RadianceCell> cells;
+};
+using RadianceCacheBlendJob =
+    gpu::HostPass<RadianceCacheBlendBindings, shared::RadianceCacheConstants>;
+void radiance_cache_blend(const RadianceCacheBlendJob& job);
+
+/// shaders/indirect/indirect_rays.comp
+template <class Stage>
+struct IndirectRaysBindings {
+  gpu::Read<Stage> normals;  // rgba32f
+  gpu::Read<Stage> motion;   // rgba32f
+  RaySink<Stage> rays;
+  gpu::Read<Stage> planned;    // r32ui, shaders/shared/sampling.h, or anything
+  gpu::Write<Stage> radiance;  // rgba32f; cleared; w < 0 where the plan leaves it out
+};
+struct IndirectRaysConstants {
+  std::uint32_t by_plan;  // 0: every pixel is sampled
+};
+struct IndirectRaysJob : FrameJob<IndirectRaysBindings, IndirectRaysConstants> {
+  Rows rows;  // whose rays are made
+};
+void indirect_rays(const IndirectRaysJob& job);
+
+/// shaders/indirect/indirect_shade.comp
+template <class Stage>
+struct IndirectShadeBindings {
+  RaySource<Stage> rays;
+  gpu::ReadBuffer<Stage, shared::Hit> hits;
+  gpu::ReadWriteBuffer<Stage, std::uint32_t> keys;
+  gpu::ReadWriteBuffer<Stage, shared::RadianceCell> cells;
+  gpu::Write<Stage> radiance;  // rgba32f
+};
+struct IndirectShadeJob : FrameJob<IndirectShadeBindings, shared::RadianceCacheConstants> {
+  bool layered;  // materials of the scene have layers
+  SceneView scene;
+  const Environment& environment;
+  LobeTables tables;
+};
+void indirect_shade(const IndirectShadeJob& job);
+
+}  // namespace heliograph::render::kernels

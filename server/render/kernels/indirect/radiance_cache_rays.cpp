@@ -1,0 +1,161 @@
+#include "render/kernels/indirect/radiance_cache.hpp"
+#include "render/kernels/simd/rows.hpp"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "render/kernels/indirect/radiance_cache_rays.cpp"
+#include "hwy/foreach_target.h"
+// After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/lights.hpp"
+#include "render/kernels/simd/radiance_cache.hpp"
+#include "render/kernels/simd/random.hpp"
+#include "render/kernels/simd/rays.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::kernels::HWY_NAMESPACE {
+
+/// Three hashed words of a cell in this frame, as numbers in [0, 1).
+class CellNumbers : RandomDigits<UnsignedTag> {
+ public:
+  CellNumbers(std::uint32_t frame_number, std::uint32_t seed)
+      : RandomDigits(unsigned_tag), frame_number_(frame_number), seed_(seed) {}
+
+  glm::vec2 at(std::uint32_t check, std::uint32_t which) const {
+    const glm::uvec3 hashed = pcg3d({check, frame_number_, seed_ * 16u + which});
+    return glm::vec2(hashed.x >> 8u, hashed.y >> 8u) * 0x1p-24f;
+  }
+
+ private:
+  std::uint32_t frame_number_;
+  std::uint32_t seed_;
+};
+
+/// White surfaces without specular lobes.
+HWY_INLINE SurfaceMaterial<Float> white_surface(const Float3& normal) {
+  SurfaceMaterial<Float> m;
+  m.normal = m.geometric = m.eye = normal;
+  m.n_dot_v = m.roughness = one();
+  m.f0 = m.f90_minus_f0 = m.specular_albedo = numbers(0.0f);
+  m.diffuse_albedo = numbers(1.0f);
+  return m;
+}
+
+/// Some slots of the cache.
+class CellUpdates {
+ public:
+  CellUpdates(const RadianceCacheRaysJob& job)
+      : job_(job), numbers_(job.constants.frame_number, job.frame.seed) {}
+
+  /// Cells from `first` to before `last`, whose rays fit into a batch.
+  HWY_INLINE void generate(int first, int last) {
+    for (int i = first; i < last; ++i) {
+      if (is_due(static_cast<std::uint32_t>(i))) due_[count_++] = i;
+    }
+    RayBatch rays, shadows;
+    for (std::size_t i = 0; i < count_; i += hn::Lanes(tag)) add_rays(i, rays, shadows);
+    rays.append_to(job_.rays);
+    shadows.append_to(job_.shadows);
+  }
+  std::uint32_t alive() const { return alive_; }
+
+ private:
+  bool is_due(std::uint32_t slot) {
+    const shared::RadianceCacheConstants& c = job_.constants;
+    std::uint32_t& key = job_.keys[slot];
+    if (c.reset != 0) key = 0;
+    if (key == 0) return false;
+    shared::RadianceCell& cell = job_.cells[slot];
+    cell.updated = cell.priority = 0;
+    if (c.frame_number - cell.last_used > c.lifetime) {
+      key = 0;
+      return false;
+    }
+    ++alive_;
+    const std::uint32_t before = job_.keys[shared::cache_counts + (c.frame_number + 1) % 2];
+    const float share = c.updates / static_cast<float>(std::max(before, 1u));
+    const bool is_new = cell.samples < shared::cache_new_samples;
+    const float probability = is_new ? share * shared::cache_new_factor : share;
+    if (numbers_.at(key, 0).x >= probability) return false;
+    cell.updated = 1;
+    cell.new_direct = cell.new_indirect = glm::vec3(0.0f);
+    return true;
+  }
+
+  HWY_INLINE void add_rays(std::size_t at, RayBatch& rays, RayBatch& shadows) const {
+    const std::size_t count = std::min(count_ - at, hn::Lanes(tag));
+    StoredTriples positions, normals;
+    HWY_ALIGN std::array<float, hn::MaxLanes(Tag())> pick{}, u{}, v{}, across{}, down{};
+    HWY_ALIGN std::array<int, hn::MaxLanes(Tag())> slots{};
+    for (std::size_t lane = 0; lane < hn::Lanes(tag); ++lane) {
+      const int slot = due_[at + std::min(lane, count - 1)];
+      const shared::RadianceCell& cell = job_.cells[slot];
+      const std::uint32_t check = job_.keys[slot];
+      slots[lane] = slot;
+      positions.put(lane, cell.position);
+      normals.put(lane, cell.normal);
+      const glm::vec2 direction = numbers_.at(check, 1), point = numbers_.at(check, 3);
+      u[lane] = direction.x, v[lane] = direction.y;
+      pick[lane] = numbers_.at(check, 2).x;
+      across[lane] = point.x, down[lane] = point.y;
+    }
+    const auto load = [](const auto& values) HWY_ATTR { return hn::Load(tag, values.data()); };
+    const Mask requested = hn::FirstN(tag, count);
+    const Float3 position = positions.load(), normal = normals.load();
+    RayLanes ray;
+    ray.origin = offset_origin(position, normal, zero());
+    ray.direction = sample_cosine(normal, load(u), load(v));
+    ray.t_min = zero();
+    ray.t_max = number(1e30f);
+    ray.pixel = hn::Load(integer_tag, slots.data());
+    ray.user = numbers(0.0f);
+    rays.add(ray, requested);
+    if ((job_.frame.flags & shared::frame_direct) == 0) return;
+    add_shadow_rays(ray, position, normal, load(pick), {load(across), load(down)}, requested,
+                    shadows);
+  }
+
+  HWY_INLINE void add_shadow_rays(RayLanes ray, const Float3& position, const Float3& normal,
+                                  Float pick, const Float2& point, Mask requested,
+                                  RayBatch& shadows) const {
+    const SurfaceMaterial<Float> m = white_surface(normal);
+    const LightChoice light =
+        choose_light(job_.lights, job_.tables.ltc, m, position, requested, pick);
+    const Mask seen = aim(job_.lights, light, m, position, point, pick, requested, ray);
+    if (none(seen)) return;
+    if ((job_.frame.flags & shared::frame_shadows) == 0) ray.t_max = zero();
+    ray.user = light.contribution * (light.total / light.weight);
+    shadows.add(ray, seen);
+  }
+
+  const RadianceCacheRaysJob& job_;
+  CellNumbers numbers_;
+  std::array<int, ray_batch> due_;
+  std::size_t count_ = 0;
+  std::uint32_t alive_ = 0;
+};
+
+std::uint32_t cell_batch(const RadianceCacheRaysJob& job, int first, int last) {
+  CellUpdates updates(job);
+  updates.generate(first, last);
+  return updates.alive();
+}
+
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace heliograph::render::kernels {
+
+HWY_EXPORT(cell_batch);
+
+void radiance_cache_rays(const RadianceCacheRaysJob& job) {
+  std::atomic<std::uint32_t> alive = 0;
+  for_each_batch(shared::cache_cells, [&](int first, int last) {
+    alive += HWY_DYNAMIC_DISPATCH(cell_batch)(job, first, last);
+  });
+  job.keys[shared::cache_counts + job.constants.frame_number % 2] = alive;
+  job.rays.end();
+  job.shadows.end();
+}
+
+}  // namespace heliograph::render::kernels
+#endif

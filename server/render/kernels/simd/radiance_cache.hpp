@@ -1,0 +1,125 @@
+// Looking up the radiance cache for hits, a lane for every ray:
+// shaders/lib/lighting/radiance_cache.glsl and gathered_light.glsl. Included once per instruction
+// set.
+#if defined(HELIOGRAPH_KERNELS_RADIANCE_CACHE_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_KERNELS_RADIANCE_CACHE_HPP
+#undef HELIOGRAPH_KERNELS_RADIANCE_CACHE_HPP
+#else
+#define HELIOGRAPH_KERNELS_RADIANCE_CACHE_HPP
+#endif
+
+#include "render/kernels/indirect/radiance_cache.hpp"
+#include "render/kernels/simd/environment.hpp"
+#include "render/kernels/simd/material/hit_material.hpp"
+#include "render/kernels/simd/material/specular_lobe.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::kernels::HWY_NAMESPACE {
+
+/// Irradiance / pi.
+struct CachedLanes {
+  Float3 direct, indirect;
+  Mask known;
+};
+
+/// Three numbers of every lane in memory.
+struct StoredTriples {
+  HWY_ALIGN std::array<float, hn::MaxLanes(Tag())> x, y, z;
+  StoredTriples() = default;
+  HWY_INLINE explicit StoredTriples(const Float3& v) {
+    hn::Store(v.x, tag, x.data());
+    hn::Store(v.y, tag, y.data());
+    hn::Store(v.z, tag, z.data());
+  }
+  glm::vec3 at(std::size_t lane) const { return {x[lane], y[lane], z[lane]}; }
+  void put(std::size_t lane, const glm::vec3& v) { x[lane] = v.x, y[lane] = v.y, z[lane] = v.z; }
+  HWY_INLINE Float3 load() const {
+    return {hn::Load(tag, x.data()), hn::Load(tag, y.data()), hn::Load(tag, z.data())};
+  }
+};
+
+/// `order`: of the rays, one for each.
+HWY_INLINE CachedLanes cached_light(const CacheReader& cache, const Float3& position,
+                                    const Float3& normal, Float t, Integer order, Mask requested,
+                                    std::vector<CacheTouch>& touches) {
+  const StoredTriples positions(position), normals(normal);
+  const LaneIndices<Tag> orders(order);
+  HWY_ALIGN std::array<float, hn::MaxLanes(Tag())> lengths;
+  hn::Store(t, tag, lengths.data());
+  StoredTriples direct(numbers(0.0f)), indirect(numbers(0.0f));
+  HWY_ALIGN std::array<float, hn::MaxLanes(Tag())> known{};
+  for_each_lane(requested, [&](std::size_t lane) {
+    const CachedLight light = cache.find(positions.at(lane), normals.at(lane), lengths[lane],
+                                         static_cast<std::uint32_t>(orders.of[lane]), touches);
+    direct.put(lane, light.direct);
+    indirect.put(lane, light.indirect);
+    known[lane] = light.known ? 1.0f : 0.0f;
+  });
+  return {direct.load(), indirect.load(), hn::Gt(hn::Load(tag, known.data()), zero())};
+}
+
+/// What surfaces send to the eye of indirect light.
+template <class Material>
+HWY_INLINE Float3 reflected_light(const Material& m, const Float3& irradiance,
+                                  const EnvironmentLanes& environment, std::uint32_t flags) {
+  const bool diffuse = (flags & shared::frame_environment_diffuse) != 0;
+  const Float open = diffuse ? luminance(environment.irradiance(m.normal)) : zero();
+  const Float visible = clamped(luminance(irradiance) / at_least(open, 1e-6f), 0.0f, 1.0f);
+  Float3 specular = m.specular_albedo * irradiance;
+  if (flags & shared::frame_environment_specular) {
+    const auto reflection = [&](const Float3& normal, Float roughness) HWY_ATTR {
+      return environment.reflection(reflect(-m.eye, normal), roughness);
+    };
+    specular = mix(specular, environment_specular(m, reflection), visible);
+  }
+  return wide_albedo(m) * irradiance + specular;
+}
+
+/// The hits of rays that gather indirect light. `Job` has scene, environment, tables and cache.
+template <class Surface, class Job>
+class GatheredLight {
+ public:
+  GatheredLight(const Job& job, const CacheReader& cache)
+      : job_(job), cache_(cache), environment_(job.frame, job.environment), tables_(job.tables) {}
+
+  /// Radiance along the rays from `first` on. @return where it is known
+  HWY_INLINE Mask block(int first, int last, const RayLanes& ray, Float3& light,
+                        std::vector<CacheTouch>& touches) const {
+    const Mask requested = float_mask(hn::Lt(hn::Iota(integer_tag, first), integer(last)));
+    const HitLanes hit = load_hits(job_.hits, first, last);
+    const Mask missed = hn::AndNot(hit.met, requested);
+    light = numbers(0.0f);
+    if (!none(missed) && enabled(shared::frame_environment_diffuse)) {
+      light = environment_.radiance(ray.direction);
+    }
+    if (none(hit.met)) return requested;
+    constexpr float spread = 0.25f;  // gathering_spread of gathered_light.glsl
+    const auto s =
+        hit_surface<Surface, true>(job_.scene, hit, ray.direction, hit.t * number(spread));
+    const auto m = material_of(s, ray.direction, tables_);
+    const Mask unlit = hn::And(hit.met, s.has(shared::material_unlit));
+    const Mask lit = hn::AndNot(unlit, hit.met);
+    const CachedLanes cached =
+        cached_light(cache_, s.position, s.geometric, hit.t, ray.pixel, lit, touches);
+    Float3 sent = (wide_albedo(m) + m.specular_albedo) * (cached.direct + cached.indirect);
+    sent = select(unlit, s.base_color, sent);
+    if (enabled(shared::frame_emissive)) sent = sent + s.emissive;
+    if constexpr (Surface::layered) sent = sent * (one() / (one() - s.passing));
+    sent = select(is_bad(sent), numbers(0.0f), sent);
+    light = select(hit.met, sent, light);
+    return hn::AndNot(hn::AndNot(cached.known, lit), requested);
+  }
+
+ private:
+  bool enabled(std::uint32_t flag) const { return (job_.frame.flags & flag) != 0; }
+
+  const Job& job_;
+  const CacheReader& cache_;
+  EnvironmentLanes environment_;
+  LobeLanes<Tag> tables_;
+};
+
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,111 @@
+#include "render/passes/indirect/radiance_cache.hpp"
+
+#include "render/kernels/indirect/radiance_cache.hpp"
+#include "render/passes/formats.hpp"
+#include "render/passes/rays/ray_stream.hpp"
+#include "render/resources/light_table.hpp"
+#include "render/resources/moving_scene.hpp"
+#include "shaders/embedded.hpp"
+
+namespace heliograph::render {
+
+using formats::storage;
+
+shared::RadianceCacheConstants cache_constants(const FrameInputs& in) {
+  const auto& settings = in.settings.indirect;
+  const float size = 2.0f * in.scene.scene->bounds.radius();
+  shared::RadianceCacheConstants made{};
+  made.frame_number = in.constants.sample_index;
+  made.reset = in.constants.history_invalid;
+  made.cell_angle = settings.cell_angle;
+  made.least_size = size / 2048.0f;
+  made.most_samples = static_cast<std::uint32_t>(settings.most_samples);
+  made.lifetime = 32;
+  made.cell_fraction = 0.5f;
+  // A static view has time: nothing waits for its samples.
+  made.updates = static_cast<float>(settings.updates) * (in.clock.samples > 0 ? 4.0f : 1.0f);
+  return made;
+}
+
+namespace {
+
+struct UpdateRays {
+  tracing::RayStream rays;
+  tracing::RayStream shadows;
+};
+
+UpdateRays generate(gpu::FramePlan& plan, const FrameInputs& in, const RadianceCache& cache) {
+  const UpdateRays made{
+      declare_rays(plan, "radiance_cache", shared::cache_cells, tracing::RayKind::reflection),
+      declare_rays(plan, "radiance_cache.shadows", shared::cache_cells,
+                   tracing::RayKind::hit_shadow)};
+  begin_rays(plan, in, "radiance_cache", made.rays);
+  begin_rays(plan, in, "radiance_cache.shadows", made.shadows);
+  plan.pass("radiance_cache.rays", in.program(shaders::radiance_cache_rays, in.scene.features))
+      .bind<kernels::RadianceCacheRaysBindings>({.keys = cache.keys,
+                                                 .cells = cache.cells,
+                                                 .rays = ray_sink(made.rays),
+                                                 .shadows = ray_sink(made.shadows)})
+      .constants([in] { return cache_constants(in); })
+      .dispatch({shared::cache_cells, 1})
+      .host([in](const kernels::RadianceCacheRaysJob::Pass& pass) {
+        const auto lights = frame_lights(in.tables.lights, in.constants);
+        kernels::radiance_cache_rays({pass, in.constants, lights, in.lobe_tables()});
+      });
+  return made;
+}
+
+void shade(gpu::FramePlan& plan, const FrameInputs& in, const RadianceCache& cache,
+           const tracing::RayStream& rays, gpu::BufferRef hits) {
+  plan.pass("radiance_cache.shade", in.program(shaders::radiance_cache_shade, in.scene.features))
+      .bind<kernels::RadianceCacheShadeBindings>(
+          {.rays = ray_source(rays), .hits = hits, .keys = cache.keys, .cells = cache.cells})
+      .constants([in] { return cache_constants(in); })
+      .dispatch_indirect(rays.count, ray_groups_offset)
+      .host([in](const kernels::RadianceCacheShadeJob::Pass& pass) {
+        kernels::radiance_cache_shade({pass, in.constants, kernels::has_layers(in.scene.features),
+                                       kernels::view_scene(in.scene, in.tables, in.moving),
+                                       host_environment(in), in.lobe_tables()});
+      });
+}
+
+void light(gpu::FramePlan& plan, const FrameInputs& in, const RadianceCache& cache,
+           const tracing::RayStream& shadows) {
+  const auto occluded =
+      plan.buffer("radiance_cache.occluded", sizeof(std::uint32_t) * shadows.capacity, storage,
+                  gpu::Memory::device);
+  in.tracer.trace_any(plan, "radiance_cache.shadows.trace", in.structure, shadows, occluded);
+  plan.pass("radiance_cache.light", in.program(shaders::radiance_cache_light))
+      .bind<kernels::RadianceCacheLightBindings>(
+          {.shadows = ray_source(shadows), .occluded = occluded, .cells = cache.cells})
+      .dispatch_indirect(shadows.count, ray_groups_offset)
+      .host(kernels::radiance_cache_light);
+}
+
+}  // namespace
+
+const kernels::Environment& host_environment(const FrameInputs& in) {
+  return *in.moving.environment().view(in.settings.environment.separate_sun).maps.host;
+}
+
+RadianceCache update_radiance_cache(gpu::FramePlan& plan, const FrameInputs& in) {
+  const RadianceCache cache{
+      plan.buffer("radiance_cache.keys", sizeof(std::uint32_t) * shared::cache_words, storage,
+                  gpu::Memory::device),
+      plan.buffer("radiance_cache.cells", sizeof(shared::RadianceCell) * shared::cache_cells,
+                  storage, gpu::Memory::device)};
+  const UpdateRays update = generate(plan, in, cache);
+  const auto hits = plan.buffer("radiance_cache.hits", sizeof(shared::Hit) * update.rays.capacity,
+                                storage, gpu::Memory::device);
+  in.tracer.trace_closest(plan, "radiance_cache.trace", in.structure, update.rays, hits);
+  shade(plan, in, cache, update.rays, hits);
+  light(plan, in, cache, update.shadows);
+  plan.pass("radiance_cache.blend", in.program(shaders::radiance_cache_blend))
+      .bind<kernels::RadianceCacheBlendBindings>({.keys = cache.keys, .cells = cache.cells})
+      .constants([in] { return cache_constants(in); })
+      .dispatch({shared::cache_cells, 1})
+      .host(kernels::radiance_cache_blend);
+  return cache;
+}
+
+}  // namespace heliograph::render

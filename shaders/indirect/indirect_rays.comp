@@ -1,0 +1,46 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 8, local_size_y = 8) in;
+// One cosine-distributed ray per pixel that gathers what comes from the environment and from other
+// surfaces.
+#include "lib/frame.glsl"
+#include "lib/math/octahedral.glsl"
+#include "lib/math/random.glsl"
+#include "lib/rays/ray_stream.glsl"
+#include "lib/rays/sampling_plan.glsl"
+#include "lib/math/geometry.glsl"
+
+layout(set = 1, binding = 0, rgba32f) readonly uniform image2D normals;
+layout(set = 1, binding = 1, rgba32f) readonly uniform image2D motion;
+layout(set = 1, binding = 2, std430) buffer Count { RayCount ray_count; };
+layout(set = 1, binding = 3, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 4, r32ui) readonly uniform uimage2D planned;  // or anything
+layout(set = 1, binding = 5, rgba32f) writeonly uniform image2D radiance;
+layout(push_constant) uniform Constants { uint by_plan; };
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  bool requested = false;
+  Ray ray;
+  float view_z = outside_frame(pixel) ? 0.0 : imageLoad(motion, pixel).w;
+  bool left_out = view_z > 0.0 && by_plan != 0u &&
+                  (imageLoad(planned, pixel).r & plan_ambient) == 0u;
+  if (view_z > 0.0 && !left_out) {
+    vec4 encoded = imageLoad(normals, pixel);
+    vec3 shading = octahedral_decode(encoded.xy);
+    vec3 geometric = octahedral_decode(encoded.zw);
+    vec2 u = random_pair(uvec2(pixel), frame.sample_index, 3u, frame.seed);
+    ray.origin = offset_origin(world_position(pixel, view_z), geometric, view_z);
+    ray.t_min = 0.0;
+    ray.direction = sample_cosine(shading, u);
+    ray.t_max = 1e30;
+    ray.pixel = uint(pixel.x) | uint(pixel.y) << 16u;
+    ray.user = ray.padding0 = ray.padding1 = 0u;
+    requested = dot(ray.direction, geometric) > 0.0;
+  }
+  // Directions below the surface bring nothing.
+  if (!outside_frame(pixel)) {
+    imageStore(radiance, pixel, vec4(0.0, 0.0, 0.0, left_out ? no_sample : 1.0));
+  }
+  APPEND_RAY(requested, ray)
+}

@@ -1,0 +1,89 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+// Chooses the cells that are updated in this frame: a shadow ray toward one light and a gathering
+// ray for each. Frees those that nothing has used for long.
+#include "lib/lighting/environment.glsl"
+#include "lib/lighting/light_choice.glsl"
+#include "lib/math/sampling.glsl"
+#include "lib/rays/ray_stream.glsl"
+#include "shared/radiance_cache.h"
+
+layout(set = 1, binding = 0, std430) buffer Keys { uint cache_keys[]; };
+layout(set = 1, binding = 1, std430) buffer Cells { RadianceCell cells[]; };
+layout(set = 1, binding = 2, std430) buffer Count { RayCount ray_count; };
+layout(set = 1, binding = 3, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 4, std430) buffer ShadowCount { RayCount shadow_count; };
+layout(set = 1, binding = 5, std430) writeonly buffer ShadowRays { Ray shadow_rays[]; };
+layout(push_constant) uniform Constants { RadianceCacheConstants constants; };
+#include "lib/lighting/radiance_cache.glsl"
+
+/// A white surface without specular lobes.
+SurfaceMaterial white_surface(vec3 normal) {
+  SurfaceMaterial m = surface_material(vec3(1.0), 0.0, 1.0, normal, normal, normal, plain_layer());
+  m.f0 = m.f90_minus_f0 = m.specular_albedo = vec3(0.0);
+  m.diffuse_albedo = vec3(1.0);
+  return m;
+}
+
+float cell_number(uint check, uint which) {
+  uvec3 hashed = pcg3d(uvec3(check, constants.frame_number, frame.seed * 16u + which));
+  return float(hashed.x >> 8u) * exp2(-24.0);
+}
+vec2 cell_pair(uint check, uint which) {
+  uvec3 hashed = pcg3d(uvec3(check, constants.frame_number, frame.seed * 16u + which));
+  return vec2(hashed.xy >> 8u) * exp2(-24.0);
+}
+
+/// Whether the cell is one of those that are updated. All cells are counted for the next frame.
+bool is_due(RadianceCell cell, uint check) {
+  atomicAdd(cache_keys[cache_counts + constants.frame_number % 2u], 1u);
+  uint before = cache_keys[cache_counts + (constants.frame_number + 1u) % 2u];
+  float probability = constants.updates / float(max(before, 1u));
+  if (cell.samples < cache_new_samples) probability *= cache_new_factor;
+  return cell_number(check, 0u) < probability;
+}
+
+void main() {
+  uint slot = gl_GlobalInvocationID.x;
+  bool gathers = false, lit = false;
+  Ray ray, shadow;
+  if (constants.reset != 0u) cache_keys[slot] = 0u;
+  uint check = cache_keys[slot];
+  if (check != 0u) {
+    RadianceCell cell = cells[slot];
+    cells[slot].updated = cells[slot].priority = 0u;
+    if (constants.frame_number - cell.last_used > constants.lifetime) {
+      cache_keys[slot] = 0u;
+    } else if (is_due(cell, check)) {
+      gathers = true;
+      cells[slot].updated = 1u;
+      cells[slot].new_direct = cells[slot].new_indirect = vec3(0.0);
+      ray.origin = offset_origin(cell.position, cell.normal, 0.0);
+      ray.t_min = 0.0;
+      ray.direction = sample_cosine(cell.normal, cell_pair(check, 1u));
+      ray.t_max = 1e30;
+      ray.pixel = slot;
+      ray.user = ray.padding0 = ray.padding1 = 0u;
+      if (enabled(frame_direct)) {
+        SurfaceMaterial m = white_surface(cell.normal);
+        float pick = cell_number(check, 2u);
+        LightChoice choice = choose_light(m, cell.position, pick);
+        if (choice.total > 0.0) {
+          Light light = light_number(choice.number);
+          shadow = light_ray(light, m, cell.position, 0.0, cell_pair(check, 3u), pick, lit);
+          vec3 carried = light_contribution(light, m, cell.position) *
+                         (choice.total / choice.weight);
+          shadow.pixel = slot;
+          shadow.user = floatBitsToUint(carried.r);
+          shadow.padding0 = floatBitsToUint(carried.g);
+          shadow.padding1 = floatBitsToUint(carried.b);
+          if (!enabled(frame_shadows)) shadow.t_max = 0.0;
+        }
+      }
+    }
+  }
+  APPEND_RAY(gathers, ray)
+  barrier();
+  APPEND_RAY_TO(shadow_count, shadow_rays, lit, shadow)
+}

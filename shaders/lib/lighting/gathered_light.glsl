@@ -1,0 +1,28 @@
+// What comes back along a ray that gathers indirect light. Include after the cache's buffers.
+#ifndef HELIOGRAPH_GATHERED_LIGHT_GLSL
+#define HELIOGRAPH_GATHERED_LIGHT_GLSL
+#include "lib/scene/hit_material.glsl"
+#include "lib/lighting/radiance_cache.glsl"
+
+/// Width of a gathering ray's cone, metres per metre.
+const float gathering_spread = 0.25;
+
+/// Radiance; `known` is false where the cache has nothing to say.
+vec3 gathered_light(Ray ray, Hit hit, RadianceCacheConstants c, out bool known) {
+  known = true;
+  if (hit.instance == hit_none) {
+    return enabled(frame_environment_diffuse) ? environment_radiance(ray.direction) : vec3(0.0);
+  }
+  HitSurface s = hit_surface(hit, ray.direction, hit.t * gathering_spread);
+  vec3 light = own_light(s);
+  if (is_unlit(s)) return light;
+  SurfaceMaterial m = material_of(s, ray.direction);
+  CachedLight cached = cached_light(s.position, s.geometric, hit.t, c);
+  known = cached.known;
+  // Specular lobes send on what they get, as if it came from everywhere.
+  vec3 albedo = wide_albedo(m) + m.specular_albedo;
+  light += albedo * (cached.direct + cached.indirect);
+  return light * (scene_has(scene_blends) ? stopped_weight(s) : 1.0);
+}
+
+#endif
