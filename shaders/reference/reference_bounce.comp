@@ -1,8 +1,10 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
-// One vertex of a path of full global illumination: what arrives by itself, one light and the
-// environment in one direction as far as their shadow rays will find, and where the path goes on.
+// One vertex of a path of full global illumination: what arrives by itself; one light, one emissive
+// triangle and the environment in one direction as far as their shadow rays will find; and where
+// the path goes on.
+#include "lib/lighting/emissive_lights.glsl"
 #include "lib/lighting/environment_sampling.glsl"
 #include "lib/rays/reference_path.glsl"
 
@@ -13,21 +15,35 @@ layout(set = 1, binding = 3, std430) writeonly buffer ShadowCount { RayCount sha
 layout(set = 1, binding = 4, std430) writeonly buffer ShadowRays { Ray shadow_rays[]; };
 layout(set = 1, binding = 5, std430) writeonly buffer SkyCount { RayCount sky_count; };
 layout(set = 1, binding = 6, std430) writeonly buffer SkyRays { Ray sky_rays[]; };
-layout(set = 1, binding = 7, rgba32f) uniform image2D reference;
+layout(set = 1, binding = 7, std430) writeonly buffer EmissiveCount { RayCount emissive_count; };
+layout(set = 1, binding = 8, std430) writeonly buffer EmissiveRays { Ray emissive_rays[]; };
+layout(set = 1, binding = 9, rgba32f) uniform image2D reference;
 layout(push_constant) uniform Constants { ReferenceConstants constants; };
 
 const uint first_roulette = 3u;       // bounce after which dim paths end at random
 const float least_roughness = 0.1;  // whose lobe is wide enough to be met by chance
+
+/// Of light that a path meets by chance, where it is also sampled: two ways lead there, each weighed
+/// by how likely it is (Veach and Guibas 1995).
+float mis_weight(float density, float other) {
+  return other > 0.0 ? density / (density + other) : 1.0;
+}
 
 vec3 environment_at_miss(ReferencePath path, vec3 direction) {
   if (path.bounces == 0u) return background(direction);
   uint lobe = (path.flags & path_specular) != 0u ? frame_environment_specular
                                                  : frame_environment_diffuse;
   if (!enabled(lobe)) return vec3(0.0);
-  // Two ways lead here, each weighed by how likely it is (Veach and Guibas 1995).
   float other = path.density > 0.0 ? environment_density(direction) : 0.0;
-  float mis_weight = other > 0.0 ? path.density / (path.density + other) : 1.0;
-  return environment_radiance(direction) * mis_weight;
+  return environment_radiance(direction) * mis_weight(path.density, other);
+}
+
+/// What a surface sends out by itself.
+vec3 own_light_at_hit(ReferencePath path, HitSurface s, Hit hit, vec3 direction) {
+  if (is_unlit(s)) return own_light(s);
+  if (!side_shines(s, direction)) return vec3(0.0);
+  if (!scene_has(scene_emissive) || path.density <= 0.0) return own_light(s);
+  return own_light(s) * mis_weight(path.density, emissive_density(hit, s, direction));
 }
 
 /// How likely scatter() takes the specular lobe.
@@ -73,31 +89,57 @@ SpecularValue specular_value(SurfaceMaterial m, vec3 l, bool of_coat) {
                        density * (of_coat ? drawn : 1.0 - drawn));
 }
 
-/// Light of the environment from a direction drawn from its own table, lobe by lobe: each with the
-/// weight that scatter() leaves to it.
+/// BRDF x cos over the density of `l`, which was drawn with `density` to sample a light, lobe by
+/// lobe: each with the weight that scatter() leaves to it.
+vec3 scattered_light(SurfaceMaterial m, vec3 l, float density, bool diffuse, bool specular) {
+  float specular_probability = specular_lobe_probability(m);
+  vec3 sent = vec3(0.0);
+  float cosine = dot(l, m.normal);
+  if (cosine > 0.0 && diffuse) {
+    sent += wide_light(m, l) / (density + (1.0 - specular_probability) * cosine / pi);
+  }
+  if (m.roughness >= least_roughness && specular) {
+    SpecularValue value = specular_value(m, l, false);
+    sent += value.reflected / (density + specular_probability * value.density);
+  }
+  if (has_coat(m) && m.coat_roughness >= least_roughness && specular) {
+    SpecularValue value = specular_value(m, l, true);
+    sent += value.reflected / (density + specular_probability * value.density);
+  }
+  return sent;
+}
+
+/// Light of the environment from a direction drawn from its own table.
 Ray sky_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
   EnvironmentSample sky = sample_environment(path_pair(pixel, constants.round, 6u),
                                              path_pair(pixel, constants.round, 7u));
   vec3 l = sky.direction;
   if (dot(l, m.geometric) <= 0.0) return no_ray();
-  float specular_probability = specular_lobe_probability(m);
-  vec3 sent = vec3(0.0);
-  float cosine = dot(l, m.normal);
-  if (cosine > 0.0 && enabled(frame_environment_diffuse)) {
-    float density = (1.0 - specular_probability) * cosine / pi;
-    sent += wide_light(m, l) / (sky.density + density);
-  }
-  if (m.roughness >= least_roughness && enabled(frame_environment_specular)) {
-    SpecularValue value = specular_value(m, l, false);
-    sent += value.reflected / (sky.density + specular_probability * value.density);
-  }
-  if (has_coat(m) && m.coat_roughness >= least_roughness && enabled(frame_environment_specular)) {
-    SpecularValue value = specular_value(m, l, true);
-    sent += value.reflected / (sky.density + specular_probability * value.density);
-  }
+  vec3 sent = scattered_light(m, l, sky.density, enabled(frame_environment_diffuse),
+                              enabled(frame_environment_specular));
   if (sent == vec3(0.0)) return no_ray();
   Ray ray = ray_from(position, m.geometric, l, 1e30);
   carry(ray, throughput * sent * environment_radiance(l));
+  return ray;
+}
+
+/// Light of an emissive triangle, drawn by power. `cone` is that of diffuse light's rays.
+Ray emissive_ray(SurfaceMaterial m, vec3 position, RayCone cone, vec3 throughput, ivec2 pixel) {
+  if (!enabled(frame_emissive)) return no_ray();
+  Hit drawn = draw_emissive(path_pair(pixel, constants.round, 8u),
+                            path_pair(pixel, constants.round, 9u));
+  EmissiveSample light = emissive_sample(drawn, position, cone);
+  vec3 l = light.position - position;
+  float away = length(l);
+  l /= max(away, 1e-20);
+  if (light.emission == vec3(0.0) || dot(l, m.geometric) <= 0.0) return no_ray();
+  float density = density_of_direction(light.density, away, dot(light.normal, l));
+  if (density <= 0.0) return no_ray();
+  vec3 sent = scattered_light(m, l, density, true, true);
+  if (sent == vec3(0.0)) return no_ray();
+  // As far as the triangle, which must not occlude itself.
+  Ray ray = ray_from(position, m.geometric, l, away * 0.999);
+  carry(ray, throughput * sent * light.emission);
   return ray;
 }
 
@@ -159,7 +201,8 @@ void main() {
   if (index == 0u) shadow_count = dense_stream(frame_blending());
   Ray ray = rays[index];
   if (index == 0u) sky_count = dense_stream(frame_blending());
-  Ray shadow = no_ray(), sky = no_ray();
+  if (scene_has(scene_emissive) && index == 0u) emissive_count = dense_stream(frame_blending());
+  Ray shadow = no_ray(), sky = no_ray(), emissive = no_ray();
   if (is_wanted(ray)) {
     Hit hit = hits[index];
     ReferencePath path = paths[index];
@@ -177,11 +220,15 @@ void main() {
         rays[index] = beyond(ray, hit);
       } else {
         arrived = path.throughput;
-        radiance = own_light(s);
+        radiance = own_light_at_hit(path, s, hit, ray.direction);
         if (!is_unlit(s)) {
           shadow = light_shadow_ray(m, s.position, arrived, pixel);
           if (path.bounces < constants.limit) {
             sky = sky_ray(m, s.position, arrived, pixel);
+            if (scene_has(scene_emissive)) {
+              RayCone wide = reflected_cone(cone, hit.t, 1.0);
+              emissive = emissive_ray(m, s.position, wide, arrived, pixel);
+            }
             vec3 direction;
             if (scatter(path, m, cone, hit.t, pixel, direction)) {
               rays[index] = ray_from(s.position, s.geometric, direction, 1e30);
@@ -196,4 +243,5 @@ void main() {
   }
   shadow_rays[index] = shadow;
   sky_rays[index] = sky;
+  if (scene_has(scene_emissive)) emissive_rays[index] = emissive;
 }

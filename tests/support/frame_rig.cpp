@@ -41,7 +41,8 @@ FrameRig::FrameRig(std::shared_ptr<const scene::Scene> scene, const scene::Camer
   plan_.use_host_kernels(parts_.host_kernels);
   plan_.share_set(render::frame_set, frame_set_);
   render::write_scene_set(parts_.device, scene_set_, moving_.tables(),
-                          moving_.resources().texture_heap, moving_.resources().layers);
+                          moving_.resources().texture_heap, moving_.resources().layers,
+                          moving_.emissive());
   plan_.share_set(render::scene_set, scene_set_);
   set_view(camera);
 }

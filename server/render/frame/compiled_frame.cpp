@@ -34,7 +34,7 @@ void CompiledFrame::share_sets(const Engine::Parts& parts, const gpu::Buffer& co
   plan.share_set(frame_set, set);
   const VkDescriptorSet tables = pool.allocate(parts.programs.scene_layout.handle());
   write_scene_set(parts.device, tables, inputs.tables, inputs.scene.texture_heap,
-                  inputs.scene.layers);
+                  inputs.scene.layers, inputs.moving.emissive());
   plan.share_set(scene_set, tables);
 }
 

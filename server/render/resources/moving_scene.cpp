@@ -183,6 +183,7 @@ MovingScene::MovingScene(const gpu::Device& device, const tracing::RayTracer& tr
     : device_(device),
       resources_(std::move(rest)),
       environment_(resources_->environment),
+      emissive_(device, resources_->emissive),
       pose_(scene::rest_pose(*resources_->scene)) {
   for (const scene::Light& light : resources_->scene->lights)
     lights_at_rest_.push_back(light.device);
@@ -192,6 +193,7 @@ MovingScene::MovingScene(const gpu::Device& device, const tracing::RayTracer& tr
     moving_ = std::make_unique<Moving>(device, *resources_);
     own_lights_ = make_light_table(device, lights_.size());
     write_lights(own_lights_, lights_);
+    remake_emissive();
   }
   bind_tables();
   if (!moving_) return;
@@ -210,17 +212,36 @@ void MovingScene::bind_tables() {
       own_lights_ ? own_lights_ : shared.lights, shared.alpha_heap});
 }
 
+std::span<const shared::Material> MovingScene::materials() const {
+  if (!changed_materials_) return resources_->scene->materials;
+  const auto& [table, count, host, sets] = *changed_materials_;
+  return {reinterpret_cast<const shared::Material*>(table.mapped()), count};
+}
+
+bool MovingScene::remake_emissive() {
+  const scene::Scene& scene = *resources_->scene;
+  const std::size_t capacity = emissive_capacity(scene, materials());
+  if (capacity == 0 && !emissive_.may_shine()) return false;
+  std::vector<glm::mat4> worlds;
+  for (const scene::Instance& instance : scene.instances) {
+    worlds.push_back(pose_.worlds[instance.node]);
+  }
+  return emissive_.remake({scene, materials(), resources_->emission_means, worlds}, capacity);
+}
+
+std::uint32_t MovingScene::features() const {
+  const std::uint32_t others = resources_->features & ~shared::scene_emissive;
+  return others | (emissive_.may_shine() ? shared::scene_emissive : 0u);
+}
+
 const kernels::MaterialTable& MovingScene::host_materials() const {
   return changed_materials_ ? changed_materials_->host : resources_->host_materials;
 }
 
 const std::vector<VkDescriptorSet>& MovingScene::material_sets() const {
   if (!changed_materials_) return resources_->material_sets().sets;
-  auto& [table, count, host, sets] = *changed_materials_;
-  if (!sets) {
-    const auto* const now = reinterpret_cast<const shared::Material*>(table.mapped());
-    sets = resources_->make_material_sets({now, count}, gpu::Memory::upload);
-  }
+  auto& sets = changed_materials_->sets;
+  if (!sets) sets = resources_->make_material_sets(materials(), gpu::Memory::upload);
   return sets->sets;
 }
 
@@ -235,17 +256,19 @@ bool MovingScene::set_lights(std::span<const shared::Light> lights) {
 }
 
 bool MovingScene::set_materials(std::span<const shared::Material> materials) {
+  const bool emission = !same_emission(this->materials(), materials);
   kernels::MaterialTable host;
   if (device_.is_cpu()) host = resources_->make_host_materials(materials);
   if (changed_materials_) {
     std::memcpy(changed_materials_->table.mapped(), materials.data(), materials.size_bytes());
     if (changed_materials_->sets) changed_materials_->sets->write(materials);
     changed_materials_->host = std::move(host);
-    return false;
+    return emission && remake_emissive();
   }
   changed_materials_ = std::make_unique<ChangedMaterials>(ChangedMaterials{
       writable_table(device_, "materials now", materials, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT),
       materials.size(), std::move(host)});
+  if (emission) remake_emissive();
   bind_tables();
   return true;
 }
@@ -302,6 +325,8 @@ void MovingScene::move_things(const scene::Pose& before) {
   moving_->pose_is_new = false;
   const bool instances = moving_->move_instances(scene, pose_);
   const bool shapes = moving_->deform(scene, before, pose_);
+  emissive_.follow({scene, materials(), resources_->emission_means, moving_->worlds},
+                   moving_->placed);
   moving_->move_draws(scene);
   moving_->update_structure();
   moving_->settled = moving_->placed.empty() &&

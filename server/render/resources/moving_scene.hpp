@@ -17,8 +17,8 @@ namespace heliograph::render {
 ///
 /// What a pose changes, from one advance() to the next: matrices now and one frame ago in the table
 /// of instances, the vertices of meshes that deform (processor skinning, all cores), lights, the
-/// draw list and the acceleration structure. Buffers and structure keep their identity, so that
-/// plans stay valid.
+/// power of emissive triangles, the draw list and the acceleration structure. Buffers and structure
+/// keep their identity, so that plans stay valid.
 class MovingScene {
  public:
   MovingScene(const gpu::Device& device, const tracing::RayTracer& tracer,
@@ -38,6 +38,11 @@ class MovingScene {
   const std::vector<shared::Light>& lights() const { return lights_; }
   const std::vector<shared::Light>& previous_lights() const { return previous_lights_; }
 
+  /// Emissive triangles as they are now; see tables() for how to read them.
+  const EmissiveBuffers& emissive() const { return emissive_.buffers(); }
+  /// shared::scene_* of the scene with its changes.
+  std::uint32_t features() const;
+
   const LitEnvironment& environment() const { return *environment_; }
   const kernels::MaterialTable& host_materials() const;
   /// For the rasteriser; the first call may make them. Not while a frame runs.
@@ -49,7 +54,7 @@ class MovingScene {
   bool set_lights(std::span<const shared::Light> lights);
   /// Other values for the scene's materials, with the same textures, alpha and flags, which rays
   /// and draws go by. Never while a frame runs.
-  /// @return whether tables() changed: plans must be rebuilt
+  /// @return whether tables(), emissive() or features() changed: plans must be rebuilt
   bool set_materials(std::span<const shared::Material> materials);
   /// Another environment than the scene's own; plans must be rebuilt.
   void set_environment(std::shared_ptr<const LitEnvironment> environment);
@@ -78,6 +83,8 @@ class MovingScene {
     std::optional<MaterialSets> sets = std::nullopt;  // once the rasteriser needs them
   };
 
+  std::span<const shared::Material> materials() const;
+  bool remake_emissive();
   void bind_tables();
   void move_things(const scene::Pose& before);
   bool move_lights(const scene::Pose& before);
@@ -86,6 +93,7 @@ class MovingScene {
   std::shared_ptr<const SceneResources> resources_;
   std::shared_ptr<const LitEnvironment> environment_;
   std::unique_ptr<ChangedMaterials> changed_materials_;  // null: the scene's
+  EmissiveLights emissive_;
   std::vector<shared::Light> lights_at_rest_;
   gpu::Buffer own_lights_;  // empty as long as they are the scene's and rest
   bool lights_are_new_ = false;

@@ -147,6 +147,7 @@ SceneResources::SceneResources(const gpu::Device& device, const Programs& progra
                                const ImageDone& image_done)
     : scene(std::move(source)),
       environment(std::move(around)),
+      emission_means(*scene),
       device_(device),
       programs_(programs),
       white_(constant_texture(device, "white", {255, 255, 255, 255})),
@@ -158,6 +159,7 @@ SceneResources::SceneResources(const gpu::Device& device, const Programs& progra
   auto structure =
       std::async(std::launch::async, [&] { return tracer.build(*scene, rest_tables); });
   upload_textures(progress, image_done);
+  upload_emissive_triangles();
   if (device.is_cpu()) {
     host_materials = make_host_materials(scene->materials);
   } else {
@@ -169,11 +171,11 @@ SceneResources::SceneResources(const gpu::Device& device, const Programs& progra
 }
 
 std::uint64_t SceneResources::bytes() const {
-  std::uint64_t sum = rest_structure->bytes();
+  std::uint64_t sum = rest_structure->bytes() + emission_means.bytes();
   for (const gpu::Buffer* buffer :
        {&rest_tables.vertices, &rest_tables.indices, &rest_tables.meshes, &rest_tables.instances,
         &rest_tables.materials, &rest_tables.lights, &rest_tables.alpha_heap, &texture_heap.texels,
-        &texture_heap.textures, &layers}) {
+        &texture_heap.textures, &layers, &emissive.table, &emissive.first}) {
     sum += buffer->size();
   }
   const std::lock_guard lock(sampled_mutex_);
@@ -235,10 +237,20 @@ void SceneResources::upload_textures(const UploadProgress& progress, const Image
     progress("textures", 0.15f + 0.3f * static_cast<float>(i) / static_cast<float>(images.size()));
     const scene::ImagePixels pixels(images[i]);
     heap.add(i, pixels.get());
+    emission_means.add(*scene, i, pixels.get());
     if (!device_.is_cpu()) images_.push_back(make_texture(device_, images[i], pixels.get()));
     image_done(i);
   }
   texture_heap = heap.finish();
+}
+
+void SceneResources::upload_emissive_triangles() {
+  std::vector<glm::mat4> worlds;
+  for (const shared::Instance& instance : instances_) worlds.push_back(instance.world);
+  const EmissiveTable table =
+      make_emissive_table({*scene, scene->materials, emission_means, worlds});
+  emissive = upload_emissive(device_, table);
+  if (table.header.count > 0) features |= shared::scene_emissive;
 }
 
 void SceneResources::make_missing_images() const {

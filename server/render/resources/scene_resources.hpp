@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/api/engine.hpp"
+#include "render/resources/emissive/emissive_lights.hpp"
 #include "render/resources/environment/lit_environment.hpp"
 #include "render/resources/host_tables.hpp"
 #include "render/resources/texture_heap.hpp"
@@ -61,7 +62,9 @@ class SceneResources {
   std::shared_ptr<const tracing::AccelerationStructure> rest_structure;
   std::shared_ptr<const LitEnvironment> environment;
   TextureHeap texture_heap;
-  gpu::Buffer layers;                     // shared::MaterialLayer each
+  gpu::Buffer layers;  // shared::MaterialLayer each
+  EmissionMeans emission_means;
+  EmissiveBuffers emissive;               // in the default pose
   kernels::MaterialTable host_materials;  // on devices that are processors
   std::uint32_t features = 0;             // shared::scene_*
   std::vector<Draw> draws;                // opaque first, then by material
@@ -78,6 +81,7 @@ class SceneResources {
  private:
   void upload_tables(const gpu::Device& device);
   void upload_textures(const UploadProgress& progress, const ImageDone& image_done);
+  void upload_emissive_triangles();
   void make_samplers();
   void list_draws();
   void make_missing_images() const;

@@ -6,12 +6,13 @@ std::vector<gpu::DescriptorLayout::Binding> scene_bindings() {
   return {{0, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},       {1, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
           {2, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},       {3, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
           {4, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},       {5, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
-          {6, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}, {7, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
+          {6, VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER}, {7, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},
+          {8, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER},       {9, VK_DESCRIPTOR_TYPE_STORAGE_BUFFER}};
 }
 
 void write_scene_set(const gpu::Device& device, VkDescriptorSet set,
                      const tracing::SceneTables& tables, const TextureHeap& heap,
-                     const gpu::Buffer& layers) {
+                     const gpu::Buffer& layers, const EmissiveBuffers& emissive) {
   constexpr auto storage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
   gpu::DescriptorWriter(device, set)
       .buffer(0, storage, tables.vertices.handle())
@@ -22,6 +23,8 @@ void write_scene_set(const gpu::Device& device, VkDescriptorSet set,
       .buffer(5, storage, heap.textures.handle())
       .texel_buffer(6, heap.texels.texel_view(VK_FORMAT_R32_UINT))
       .buffer(7, storage, layers.handle())
+      .buffer(8, storage, emissive.table.handle())
+      .buffer(9, storage, emissive.first.handle())
       .apply();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gpu/memory/descriptors.hpp"
+#include "render/resources/emissive/emissive_lights.hpp"
 #include "render/resources/texture_heap.hpp"
 #include "tracing/ray_tracer.hpp"
 
@@ -9,9 +10,10 @@ namespace heliograph::render {
 /// Bindings of set 3 (shaders/lib/scene/scene_tables.glsl).
 std::vector<gpu::DescriptorLayout::Binding> scene_bindings();
 
-/// Points set 3 at the tables of a scene, its textures and the layers of its materials.
+/// Points set 3 at the tables of a scene, its textures, the layers of its materials
+/// and its emissive triangles.
 void write_scene_set(const gpu::Device& device, VkDescriptorSet set,
                      const tracing::SceneTables& tables, const TextureHeap& heap,
-                     const gpu::Buffer& layers);
+                     const gpu::Buffer& layers, const EmissiveBuffers& emissive);
 
 }  // namespace heliograph::render

@@ -33,6 +33,7 @@ struct HitSurface {
   vec3 geometric;  // of the triangle, likewise
   vec3 front;      // of the triangle's front face, by its winding
   vec3 local;      // position, mesh space
+  float area;      // of the triangle, world, square metres
   vec3 base_color;
   float alpha;
   float alpha_cutoff;
@@ -192,6 +193,7 @@ HitSurface hit_surface(Hit hit, vec3 direction, float width) {
   float twice_world_area = length(across);
   vec3 front = twice_world_area > 0.0 ? across / twice_world_area : vertex_normal;
   s.front = front;
+  s.area = 0.5 * twice_world_area;
   float cosine = dot(front, direction);
   float side = cosine <= 0.0 ? 1.0 : -1.0;
   // Like the G-buffer: where winding and normals disagree, the normals say which side this is.

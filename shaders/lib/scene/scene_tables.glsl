@@ -1,6 +1,7 @@
 // The shared set 3: the scene as compute shaders look it up at hits.
 #ifndef HELIOGRAPH_SCENE_TABLES_GLSL
 #define HELIOGRAPH_SCENE_TABLES_GLSL
+#include "shared/emissive.h"
 #include "shared/scene.h"
 #include "shared/texture_heap.h"
 
@@ -12,5 +13,10 @@ layout(set = 3, binding = 4, std430) readonly buffer Materials { Material materi
 layout(set = 3, binding = 5, std430) readonly buffer Textures { HeapTexture textures[]; };
 layout(set = 3, binding = 6) uniform usamplerBuffer texture_heap;
 layout(set = 3, binding = 7, std430) readonly buffer Layers { MaterialLayer layers[]; };
+layout(set = 3, binding = 8, std430) readonly buffer EmissiveTable {
+  EmissiveHeader emissive_header;
+  EmissiveTriangle emissive_triangles[];
+};
+layout(set = 3, binding = 9, std430) readonly buffer EmissiveFirst { uint emissive_first[]; };
 
 #endif

@@ -3,6 +3,7 @@
 #include "render/passes/blend/blend_surfaces.hpp"
 #include "render/passes/formats.hpp"
 #include "render/passes/rays/ray_stream.hpp"
+#include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/reference.h"
@@ -90,6 +91,8 @@ class Wavefront {
 
   void global_illumination(std::uint32_t bounces) {
     const tracing::RayStream sky = stream("reference.sky");
+    const bool shines = (in_.moving.features() & shared::scene_emissive) != 0;
+    const tracing::RayStream emissive = stream("reference.emissive", shines ? pixels_ : 1);
     const std::uint32_t rounds = 1 + bounces + passed_layers;
     for (std::uint32_t round = 0; round < rounds; ++round) {
       in_.tracer.trace_closest(plan_, "reference.trace", in_.structure, rays_, hits_);
@@ -101,17 +104,20 @@ class Wavefront {
           .write(shadows_.rays)
           .write(sky.count)
           .write(sky.rays)
+          .write(emissive.count)
+          .write(emissive.rays)
           .read_write(radiance_)
           .constants(constants(in_, round, bounces))
           .dispatch(gpu::each_pixel());
       add(shadows_);
       add(sky);
+      if (shines) add(emissive);
     }
   }
 
  private:
   gpu::PassBuilder pass(const std::string& name, const gpu::ShaderBinary& shader) {
-    return plan_.pass(name, in_.program(shader, in_.scene.features)).when([in = in_] {
+    return plan_.pass(name, in_.program(shader, in_.moving.features())).when([in = in_] {
       return traces_reference(in);
     });
   }
@@ -121,8 +127,9 @@ class Wavefront {
   }
 
   /// A ray of every pixel; without new rays the old ones are traced no more.
-  tracing::RayStream stream(const std::string& name) {
-    const tracing::RayStream made = declare_rays(plan_, name, pixels_, tracing::RayKind::path);
+  tracing::RayStream stream(const std::string& name) { return stream(name, pixels_); }
+  tracing::RayStream stream(const std::string& name, std::uint32_t capacity) {
+    const tracing::RayStream made = declare_rays(plan_, name, capacity, tracing::RayKind::path);
     begin_rays(plan_, in_, name, made);
     return made;
   }

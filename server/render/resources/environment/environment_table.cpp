@@ -4,6 +4,9 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <utility>
+
+#include "render/resources/alias_table.hpp"
 
 namespace heliograph::render {
 namespace {
@@ -54,21 +57,10 @@ std::vector<EnvironmentCell> make_environment_table(const scene::Environment& en
     cells[i] = {1.0f, static_cast<std::uint32_t>(i),
                 static_cast<float>(weights[i] / total / solid_angle), 0.0f};
   }
-  // Alias method (Vose 1991): every cell below the mean is filled up by one above it.
-  std::vector<std::size_t> poor, rich;
-  for (std::size_t i = 0; i < weights.size(); ++i) {
-    weights[i] *= static_cast<double>(weights.size()) / total;
-    (weights[i] < 1.0 ? poor : rich).push_back(i);
-  }
-  while (!poor.empty() && !rich.empty()) {
-    const std::size_t filled = poor.back(), giver = rich.back();
-    poor.pop_back();
-    cells[filled].threshold = static_cast<float>(weights[filled]);
-    cells[filled].alias = static_cast<std::uint32_t>(giver);
-    weights[giver] -= 1.0 - weights[filled];
-    if (weights[giver] >= 1.0) continue;
-    rich.pop_back();
-    poor.push_back(giver);
+  const std::vector<Alias> slots = make_alias_table(std::move(weights));
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    cells[i].threshold = slots[i].threshold;
+    cells[i].alias = slots[i].item;
   }
   for (EnvironmentCell& cell : cells) cell.alias_density = cells[cell.alias].density;
   return cells;
