@@ -35,6 +35,13 @@ vec2 cell_pair(uint check, uint which) {
   return vec2(hashed.xy >> 8u) * exp2(-24.0);
 }
 
+/// Rays that find a new cell before its maker has filled it know by its samples.
+void free_cell(uint slot) {
+  cache_keys[slot] = 0u;
+  cells[slot].samples = 0u;
+  cells[slot].direct = cells[slot].indirect = vec3(0.0);
+}
+
 /// Whether the cell is one of those that are updated. All cells are counted for the next frame.
 bool is_due(RadianceCell cell, uint check) {
   atomicAdd(cache_keys[cache_counts + constants.frame_number % 2u], 1u);
@@ -48,13 +55,13 @@ void main() {
   uint slot = gl_GlobalInvocationID.x;
   bool gathers = false, lit = false;
   Ray ray, shadow;
-  if (constants.reset != 0u) cache_keys[slot] = 0u;
+  if (constants.reset != 0u) free_cell(slot);
   uint check = cache_keys[slot];
   if (check != 0u) {
     RadianceCell cell = cells[slot];
     cells[slot].updated = cells[slot].priority = 0u;
     if (constants.frame_number - cell.last_used > constants.lifetime) {
-      cache_keys[slot] = 0u;
+      free_cell(slot);
     } else if (is_due(cell, check)) {
       gathers = true;
       cells[slot].updated = 1u;

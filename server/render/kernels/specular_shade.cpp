@@ -98,7 +98,7 @@ class HitShading {
     Mask open = hn::AndNot(s.has(shared::material_unlit), met);
     if (cache_ && !none(open)) {
       const CachedLanes cached =
-          cached_light(*cache_, s.position, s.geometric, -m.eye, t, order, open, touches_);
+          cached_light(*cache_, s.position, s.geometric, t, order, open, touches_);
       open = hn::AndNot(cached.known, open);
       light = reflected_light(m, cached.indirect, environment_, frame_.flags);
     }

@@ -34,18 +34,10 @@ uint normal_axis(vec3 n) {
   return n.z >= 0.0 ? 4u : 5u;
 }
 
-/// Which of four quarters about the normal's axis a ray comes from: the two sides of a thin wall on
-/// a floor have cells of their own.
-uint quarter(vec3 direction, uint axis) {
-  vec2 along = axis < 2u ? direction.yz : axis < 4u ? direction.xz : direction.xy;
-  return (along.x > 0.0 ? 1u : 0u) + (along.y > 0.0 ? 2u : 0u);
-}
-
-CellKey cell_key(vec3 position, vec3 normal, vec3 direction, int level) {
+CellKey cell_key(vec3 position, vec3 normal, int level) {
   ivec3 cell = ivec3(floor(position * exp2(float(-level))));
   uvec3 hashed = pcg3d(uvec3(cell));
-  uint axis = normal_axis(normal);
-  hashed = pcg3d(hashed + uvec3(uint(level + 64) * 32u + axis * 4u + quarter(direction, axis), 0u, 0u));
+  hashed = pcg3d(hashed + uvec3(uint(level + 64) * 8u + normal_axis(normal), 0u, 0u));
   return CellKey((hashed.x % (cache_cells / cache_bucket)) * cache_bucket, max(hashed.y, 1u));
 }
 
@@ -58,8 +50,8 @@ uint find_cell(CellKey key) {
 
 /// Finds a cell or makes it, if there is a free slot. Which place of a cell is updated changes: a
 /// random one of those that are asked for, so that its mean is theirs.
-uint touch_cell(vec3 position, vec3 normal, vec3 direction, int level, uint frame_number) {
-  CellKey key = cell_key(position, normal, direction, level);
+uint touch_cell(vec3 position, vec3 normal, int level, uint frame_number) {
+  CellKey key = cell_key(position, normal, level);
   uint slot = find_cell(key);
   for (uint i = 0u; i < cache_bucket && slot == no_cell; ++i) {
     uint at = key.first + i;
@@ -67,8 +59,6 @@ uint touch_cell(vec3 position, vec3 normal, vec3 direction, int level, uint fram
     if (before == 0u) {
       cells[at].position = position;
       cells[at].normal = normal;
-      cells[at].samples = 0u;
-      cells[at].direct = cells[at].indirect = vec3(0.0);
     }
     if (before == 0u || before == key.check) slot = at;
   }
@@ -89,13 +79,12 @@ struct CachedLight {
   bool known;
 };
 
-/// `direction` and `t` (length, metres): of the ray that asks.
-CachedLight cached_light(vec3 position, vec3 normal, vec3 direction, float t,
-                         RadianceCacheConstants c) {
+/// `t`: length of the ray that asks, metres.
+CachedLight cached_light(vec3 position, vec3 normal, float t, RadianceCacheConstants c) {
   int coarse = cell_level(position, c);
   int level = clamp(cell_level_of_ray(t, c), coarse - finer_levels, coarse);
   for (uint i = 0u; i < 2u; ++i) {
-    uint slot = touch_cell(position, normal, direction, level, c.frame_number);
+    uint slot = touch_cell(position, normal, level, c.frame_number);
     if (slot != no_cell && cells[slot].samples > 0u) {
       return CachedLight(cells[slot].direct, cells[slot].indirect, true);
     }

@@ -47,7 +47,7 @@ vec3 open_light(SurfaceMaterial m) {
 /// Light that comes from no light source.
 vec3 surrounding_light(HitSurface s, SurfaceMaterial m, float t) {
 #ifdef READS_RADIANCE_CACHE
-  CachedLight cached = cached_light(s.position, s.geometric, -m.eye, t, cache);
+  CachedLight cached = cached_light(s.position, s.geometric, t, cache);
   if (cached.known) return reflected_light(m, cached.indirect);
 #endif
   return open_light(m);

@@ -30,7 +30,9 @@ class IndirectComparison {
       : rig_(lit_corner(), camera(), {.extent = {96, 64}, .settings = settings}),
         gbuffer_(render::trace_gbuffer(rig_.plan(), with_host_kernels(rig_, true))),
         shader_(trace(false)),
-        host_(trace(true)) {}
+        host_(trace(true)) {
+    rig_.invalidate_history();  // the caches are empty
+  }
 
   /// Frames from `first` to before `last`.
   void run(std::uint32_t first, std::uint32_t last) {

@@ -48,18 +48,10 @@ struct CellKey {
   std::uint32_t check;
 };
 
-std::uint32_t quarter(const vec3& direction, std::uint32_t axis) {
-  const glm::vec2 along = axis < 2   ? glm::vec2(direction.y, direction.z)
-                          : axis < 4 ? glm::vec2(direction.x, direction.z)
-                                     : glm::vec2(direction.x, direction.y);
-  return (along.x > 0.0f ? 1u : 0u) + (along.y > 0.0f ? 2u : 0u);
-}
-
-CellKey cell_key(const vec3& position, const vec3& normal, const vec3& direction, int level) {
+CellKey cell_key(const vec3& position, const vec3& normal, int level) {
   const vec3 cell = glm::floor(position * std::ldexp(1.0f, -level));
   uvec3 hashed = pcg3d(uvec3(glm::ivec3(cell)));
-  const std::uint32_t axis = normal_axis(normal);
-  hashed.x += static_cast<std::uint32_t>(level + 64) * 32u + axis * 4u + quarter(direction, axis);
+  hashed.x += static_cast<std::uint32_t>(level + 64) * 8u + normal_axis(normal);
   hashed = pcg3d(hashed);
   constexpr std::uint32_t buckets = shared::cache_cells / shared::cache_bucket;
   return {hashed.x % buckets * shared::cache_bucket, std::max(hashed.y, 1u)};
@@ -80,15 +72,14 @@ std::uint32_t priority_of(const vec3& position, std::uint32_t frame_number) {
 
 }  // namespace
 
-CachedLight CacheReader::find(const vec3& position, const vec3& normal, const vec3& direction,
-                              float t, std::uint32_t order,
-                              std::vector<CacheTouch>& touches) const {
+CachedLight CacheReader::find(const vec3& position, const vec3& normal, float t,
+                              std::uint32_t order, std::vector<CacheTouch>& touches) const {
   const shared::RadianceCacheConstants& c = constants_;
   const int coarse = level_of(std::max(glm::distance(position, eye_) * c.cell_angle, c.least_size));
   int level = std::clamp(level_of(std::max(t * c.cell_fraction, c.least_size)),
                          coarse - shared::finer_levels, coarse);
   while (true) {
-    const CellKey key = cell_key(position, normal, direction, level);
+    const CellKey key = cell_key(position, normal, level);
     const std::uint32_t slot = find_slot(keys_, key);
     const std::uint32_t priority = priority_of(position, c.frame_number);
     if (slot == no_cell || priority > 0) {

@@ -39,11 +39,10 @@ class CacheReader {
               const shared::RadianceCacheConstants& constants, const glm::vec3& eye)
       : keys_(keys), cells_(cells), constants_(constants), eye_(eye) {}
 
-  /// Of the cell at `position` with the geometric `normal`, world, for a ray along `direction` of
-  /// length `t`, metres.
+  /// Of the cell at `position` with the geometric `normal`, world, for a ray of length `t`, metres.
   /// `touches` gets the cells that are to be made or moved. Thread safe.
-  CachedLight find(const glm::vec3& position, const glm::vec3& normal, const glm::vec3& direction,
-                   float t, std::uint32_t order, std::vector<CacheTouch>& touches) const;
+  CachedLight find(const glm::vec3& position, const glm::vec3& normal, float t, std::uint32_t order,
+                   std::vector<CacheTouch>& touches) const;
   /// Thread safe.
   void add(std::span<const CacheTouch> touches);
   /// After all threads are done.

@@ -40,19 +40,17 @@ struct StoredTriples {
 
 /// `order`: of the rays, one for each.
 HWY_INLINE CachedLanes cached_light(const CacheReader& cache, const Float3& position,
-                                    const Float3& normal, const Float3& direction, Float t,
-                                    Integer order, Mask requested,
+                                    const Float3& normal, Float t, Integer order, Mask requested,
                                     std::vector<CacheTouch>& touches) {
-  const StoredTriples positions(position), normals(normal), directions(direction);
+  const StoredTriples positions(position), normals(normal);
   const LaneIndices<Tag> orders(order);
   HWY_ALIGN std::array<float, hn::MaxLanes(Tag())> lengths;
   hn::Store(t, tag, lengths.data());
   StoredTriples direct(numbers(0.0f)), indirect(numbers(0.0f));
   HWY_ALIGN std::array<float, hn::MaxLanes(Tag())> known{};
   for_each_lane(requested, [&](std::size_t lane) {
-    const CachedLight light =
-        cache.find(positions.at(lane), normals.at(lane), directions.at(lane), lengths[lane],
-                   static_cast<std::uint32_t>(orders.of[lane]), touches);
+    const CachedLight light = cache.find(positions.at(lane), normals.at(lane), lengths[lane],
+                                         static_cast<std::uint32_t>(orders.of[lane]), touches);
     direct.put(lane, light.direct);
     indirect.put(lane, light.indirect);
     known[lane] = light.known ? 1.0f : 0.0f;
@@ -101,8 +99,8 @@ class GatheredLight {
     const auto m = material_of(s, ray.direction, tables_);
     const Mask unlit = hn::And(hit.met, s.has(shared::material_unlit));
     const Mask lit = hn::AndNot(unlit, hit.met);
-    const CachedLanes cached = cached_light(cache_, s.position, s.geometric, ray.direction, hit.t,
-                                            ray.pixel, lit, touches);
+    const CachedLanes cached =
+        cached_light(cache_, s.position, s.geometric, hit.t, ray.pixel, lit, touches);
     Float3 sent = (wide_albedo(m) + m.specular_albedo) * (cached.direct + cached.indirect);
     sent = select(unlit, s.base_color, sent);
     if (enabled(shared::frame_emissive)) sent = sent + s.emissive;
