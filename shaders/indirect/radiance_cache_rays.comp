@@ -38,7 +38,7 @@ vec2 cell_pair(uint check, uint which) {
 /// Rays that find a new cell before its maker has filled it know by its samples.
 void free_cell(uint slot) {
   cache_keys[slot] = 0u;
-  cells[slot].samples = 0u;
+  cells[slot].samples = cells[slot].updated = 0u;
   cells[slot].direct = cells[slot].indirect = vec3(0.0);
 }
 
