@@ -131,10 +131,13 @@ std::vector<protocol::Settings> settings_for_all_buffers() {
   all[3].shadow_blur.half_resolution = all[4].shadow_blur.half_resolution = true;
   all[3].shadow_blur.iterations = all[4].shadow_blur.iterations = 4;
   all[4].shadow_blur.kernel = protocol::BlurKernel::full;
+  all[2].indirect.enabled = all[3].indirect.enabled = true;
+  all[3].indirect_blur.kernel = protocol::BlurKernel::full;
   for (const char* assignment :
        {"reference.use=when_static", "reinhard.mode=exact",
         "shadow_temporal.rectification=percentile", "specular_temporal.rectification=percentile",
-        "shadow_blur.feedback=1", "specular_blur.feedback=1"}) {
+        "indirect_temporal.rectification=percentile", "shadow_blur.feedback=1",
+        "specular_blur.feedback=1"}) {
     EXPECT_TRUE(protocol::set_by_path(all[2], assignment)) << assignment;
   }
   return all;
@@ -158,8 +161,8 @@ TEST(BufferNames, MatchBuffersOfAllSettings) {
   std::set<std::string> expected(names.begin(), names.end());
   // Host kernels filter both halves of an iteration at once.
   if (engine("auto").parts().device.is_cpu()) {
-    for (const char* name :
-         {"visibility.blur.half", "visibility.half.blur.half", "specular.blur.half"}) {
+    for (const char* name : {"visibility.blur.half", "visibility.half.blur.half",
+                             "specular.blur.half", "indirect.blur.half"}) {
       expected.erase(name);
     }
   }
