@@ -25,9 +25,12 @@ uint turn_of(uvec2 pixel) {
   return odd << 2u | across << 1u | within;
 }
 
+/// Whether a pixel has its turn, once in `frames`.
+bool has_turn(uint turn, uint frames) { return (turn % plan_turns) * frames < plan_turns; }
+
 /// Whether a surface with a history of `frames` is sampled when `turn` is its place in this frame.
 bool is_sampled(float frames, uint most, uint turn) {
-  return frames < constants.full_frames || (turn % plan_turns) * most < plan_turns;
+  return frames < constants.full_frames || has_turn(turn, most);
 }
 
 /// Whether a reflection that would be sampled traces no ray, because it is rough. Metals show most
@@ -46,8 +49,10 @@ void main() {
   ivec2 before = ivec2(floor(map.xy));
   ivec2 within = before - ivec2(floor(map.xy - 0.5));
   bool known = (uint(map.z) >> uint(within.x + 2 * within.y) & 1u) != 0u;
+  uint turn = turn_of(uvec2(pixel)) + (frame.sample_index * plan_step >> 29u);
+  bool has_ambient_turn = has_turn(turn, constants.ambient_least);
   if (!known) {
-    imageStore(planned, pixel, uvec4(plan_all));
+    imageStore(planned, pixel, uvec4(has_ambient_turn ? plan_all : plan_all & ~plan_ambient));
     return;
   }
   vec2 frames = imageLoad(visibility_length, before).xy;
@@ -59,11 +64,10 @@ void main() {
   float reflected = imageLoad(specular_length, before).x * (mirrors ? 1.0 : plan_quiet_factor);
   uint most = mirrors ? constants.mirrors_most : constants.specular_most;
 
-  uint turn = turn_of(uvec2(pixel)) + (frame.sample_index * plan_step >> 29u);
   uint word = floatBitsToUint(abs(imageLoad(specular_distance, before).w)) >> 16u;
   word |= uint(clamp(visible.y, 0.0, 1.0) * plan_visibility_steps + 0.5) << plan_visibility_shift;
-  if (is_sampled(frames.x, constants.visibility_most, turn)) word |= plan_shadows;
-  if (is_sampled(frames.y, constants.visibility_most, turn)) word |= plan_ambient;
+  if (is_sampled(frames.x, constants.shadows_most, turn)) word |= plan_shadows;
+  if (has_ambient_turn && is_sampled(frames.y, constants.ambient_most, turn)) word |= plan_ambient;
   if (is_sampled(reflected, most, turn + plan_turns / 2u)) {
     word |= is_faded(material, pixel) ? constants.faded : plan_specular;
   }

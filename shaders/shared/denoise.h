@@ -131,5 +131,14 @@ struct AtrousConstants {
 // VisibilityUpsample.KeepsWhatIsKnownAtFullSize.
 SHARED_CONSTANT float upsample_own_weight = 0.15f;
 
+// indirect_halve: pixels of a square show one surface within this cosine of their normals and a
+// change of view Z of so many slopes and of so much of itself. IndirectHalf.KeepsSurfacesApart.
+SHARED_CONSTANT float half_size_cosine = 0.8f;
+SHARED_CONSTANT float half_size_slopes = 3.0f;
+SHARED_CONSTANT float half_size_depth = 0.005f;
+// indirect_upsample: what a texel of another surface weighs, so that a pixel whose surface no texel
+// shows takes those about it.
+SHARED_CONSTANT float upsample_least = 1e-4f;
+
 SHARED_END
 #endif

@@ -40,8 +40,10 @@ SHARED_CONSTANT float expected_albedo = 0.3f;
 SHARED_CONSTANT float shown_depth_tolerance = 0.02f;
 
 struct SamplingPlanConstants {
-  float full_frames;     // shorter histories are sampled in every frame
-  uint visibility_most;  // longer ones once in so many frames
+  float full_frames;  // shorter histories are sampled in every frame
+  uint shadows_most;  // longer ones once in so many frames
+  uint ambient_most;
+  uint ambient_least;  // and shorter ones, of ambient and indirect light
   uint specular_most;
   uint mirrors_most;    // of reflections on smooth or metallic surfaces
   float fade_start;     // roughness above which a growing fraction of pixels traces no reflection

@@ -15,10 +15,10 @@ FrameRig::FrameRig(std::shared_ptr<const scene::Scene> scene, const scene::Camer
               engine(options.tracer).upload(std::move(scene), options.environment)),
       options_(options),
       settings_(options.settings),
-      constants_buffer_(parts_.device, "frame constants", sizeof(shared::FrameConstants),
-                        VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::upload),
-      pool_(parts_.device, 2, 16),
+      constants_buffers_(parts_.device),
+      pool_(parts_.device, 3, 24),
       frame_set_(pool_.allocate(parts_.programs.frame_layout.handle())),
+      half_frame_set_(pool_.allocate(parts_.programs.frame_layout.handle())),
       scene_set_(pool_.allocate(parts_.programs.scene_layout.handle())),
       inputs_{parts_.programs,
               moving_.resources(),
@@ -26,6 +26,7 @@ FrameRig::FrameRig(std::shared_ptr<const scene::Scene> scene, const scene::Camer
               *parts_.tracer,
               moving_.structure(),
               constants_,
+              half_constants_,
               settings_,
               clock_,
               moving_,
@@ -35,11 +36,14 @@ FrameRig::FrameRig(std::shared_ptr<const scene::Scene> scene, const scene::Camer
               parts_.ltc_table,
               options.shown.value_or(options.extent)},
       plan_(parts_.device, options.extent) {
-  render::write_frame_set(
-      parts_, frame_set_, constants_buffer_, moving_.tables().lights,
-      moving_.resources().environment->view(settings_.environment.separate_sun));
+  const auto& environment =
+      moving_.resources().environment->view(settings_.environment.separate_sun);
+  const gpu::Buffer& lights = moving_.tables().lights;
+  render::write_frame_set(parts_, frame_set_, constants_buffers_.whole, lights, environment);
+  render::write_frame_set(parts_, half_frame_set_, constants_buffers_.half, lights, environment);
   plan_.use_host_kernels(parts_.host_kernels);
   plan_.share_set(render::frame_set, frame_set_);
+  plan_.share_set(render::frame_set, half_frame_set_, 2);
   render::write_scene_set(parts_.device, scene_set_, moving_.tables(),
                           moving_.resources().texture_heap, moving_.resources().layers,
                           moving_.emissive());
@@ -54,7 +58,8 @@ void FrameRig::set_view(const scene::Camera& camera, std::uint32_t sample) {
                                             sample, has_view_ ? &before : nullptr);
   clock_.age = has_view_ ? clock_.age + 1 : 0;
   has_view_ = true;
-  std::memcpy(constants_buffer_.mapped(), &constants_, sizeof constants_);
+  half_constants_ = render::at_half_size(constants_);
+  constants_buffers_.upload(constants_, half_constants_);
 }
 
 void FrameRig::run() {

@@ -68,13 +68,15 @@ class FrameRig {
   RigOptions options_;
   protocol::Settings settings_;
   shared::FrameConstants constants_{};
+  shared::FrameConstants half_constants_{};
   render::FrameClock clock_;
   render::SceneMotion scene_motion_;
   bool has_view_ = false;
   bool compiled_ = false;
-  gpu::Buffer constants_buffer_;
+  render::FrameConstantsBuffers constants_buffers_;
   gpu::DescriptorPool pool_;
   VkDescriptorSet frame_set_ = VK_NULL_HANDLE;
+  VkDescriptorSet half_frame_set_ = VK_NULL_HANDLE;
   VkDescriptorSet scene_set_ = VK_NULL_HANDLE;
   render::FrameInputs inputs_;
   gpu::FramePlan plan_;

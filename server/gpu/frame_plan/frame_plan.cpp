@@ -42,6 +42,7 @@ std::uint32_t FramePlan::add(Resource resource) {
 
 ImageRef FramePlan::image(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage,
                           FrameSize size) {
+  size = size.reduced(side_);
   const bool depth = is_depth(format);
   ImageDesc desc{.name = std::string(name), .extent = size.of(extent_), .format = format};
   desc.usage = extra_usage | VK_IMAGE_USAGE_SAMPLED_BIT |
@@ -54,6 +55,7 @@ ImageRef FramePlan::image(std::string_view name, VkFormat format, VkImageUsageFl
 
 History FramePlan::history(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage,
                            FrameSize size) {
+  size = size.reduced(side_);
   ImageDesc desc{.name = std::string(name), .extent = size.of(extent_), .format = format};
   desc.usage = extra_usage | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT;
   desc.mapped = device_.is_cpu();
@@ -91,11 +93,18 @@ ImageRef FramePlan::import(const Image& image, std::optional<std::uint32_t> leve
   return {add(std::move(resource))};
 }
 
-void FramePlan::share_set(std::uint32_t number, VkDescriptorSet set) {
-  shared_sets_.emplace_back(number, set);
+void FramePlan::share_set(std::uint32_t number, VkDescriptorSet set, std::uint32_t side) {
+  shared_sets_.push_back({number, side, set});
+}
+
+void FramePlan::reduced(std::uint32_t side, const std::function<void()>& declare) {
+  const std::uint32_t before = std::exchange(side_, side_ * side);
+  declare();
+  side_ = before;
 }
 
 PassBuilder FramePlan::add(Pass pass) {
+  pass.side = side_;
   passes_.push_back(std::move(pass));
   return {*this, passes_.size() - 1};
 }

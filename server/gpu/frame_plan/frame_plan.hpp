@@ -211,8 +211,9 @@ class FramePlan {
   /// The whole image for sampling (`level` absent, with `sampler`) or one level for storage.
   ImageRef import(const Image& image, std::optional<std::uint32_t> level, VkSampler sampler);
 
-  /// A descriptor set of the caller's for every program that declares set `number`.
-  void share_set(std::uint32_t number, VkDescriptorSet set);
+  /// A descriptor set of the caller's for every program that declares set `number`, of passes that
+  /// are reduced() by `side`, or of all that no other set is for.
+  void share_set(std::uint32_t number, VkDescriptorSet set, std::uint32_t side = 1);
 
   PassBuilder pass(std::string name, const ComputeProgram& program);
   PassBuilder pass(std::string name, ProgramSource program);
@@ -224,6 +225,10 @@ class FramePlan {
   /// Passes that `declare` adds are skipped in frames where `condition` is false, besides what
   /// their own when() says.
   void only_when(const std::function<bool()>& condition, const std::function<void()>& declare);
+
+  /// Of images and passes that `declare` adds, sizes that follow the frame are those of a frame
+  /// with one texel for each square of `side` by `side` pixels.
+  void reduced(std::uint32_t side, const std::function<void()>& declare);
 
   /// The one image that comes back to the host with every frame, through read().
   void read_back(ImageRef image) {
@@ -310,6 +315,7 @@ class FramePlan {
   void record(const Pass& pass, VkCommandBuffer commands, std::uint32_t query);
   void record_raster(const Pass& pass, VkCommandBuffer commands);
   void bind(const Pass& pass, VkCommandBuffer commands);
+  void bind_shared_sets(const Pass& pass, VkCommandBuffer commands);
   /// Whether every pass is a submit of its own, timed from outside: drivers for processors write
   /// timestamps while they record, as soon as anything was ever drawn.
   bool timed_by_clock() const;
@@ -326,7 +332,13 @@ class FramePlan {
   VkExtent2D drawn_;
   std::vector<Resource> resources_;
   std::vector<Pass> passes_;
-  std::vector<std::pair<std::uint32_t, VkDescriptorSet>> shared_sets_;
+  struct SharedSet {
+    std::uint32_t number;
+    std::uint32_t side;
+    VkDescriptorSet set;
+  };
+  std::vector<SharedSet> shared_sets_;
+  std::uint32_t side_ = 1;  // of the squares that what is declared now has one texel for
   std::unique_ptr<DescriptorPool> descriptor_pool_;
   Sampler default_sampler_;
   ImageRef read_back_;

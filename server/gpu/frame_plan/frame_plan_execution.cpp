@@ -1,5 +1,6 @@
 // How a plan runs a frame.
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
@@ -104,7 +105,8 @@ void FramePlan::run_host_kernel(const Pass& pass) const {
   std::array<std::byte, most_constants> constants;
   if (pass.constants) pass.constants(constants.data());
   pass.kernel(std::span(views).first(pass.listed.size()),
-              std::span(constants).first(pass.constants_size), drawn_);
+              std::span(constants).first(pass.constants_size),
+              FrameSize::squares(pass.side).of(drawn_));
 }
 
 VkCommandBuffer FramePlan::recorder() {
@@ -167,10 +169,7 @@ void FramePlan::bind(const Pass& pass, VkCommandBuffer commands) {
   const VkPipelineBindPoint point = pass.bind_point();
   const VkPipelineLayout layout = pass.program->layout();
   vkCmdBindPipeline(commands, point, pass.program->pipeline());
-  for (const auto& [number, set] : shared_sets_) {
-    if (!pass.program->uses_set(number)) continue;
-    vkCmdBindDescriptorSets(commands, point, layout, number, 1, &set, 0, nullptr);
-  }
+  bind_shared_sets(pass, commands);
   if (pass.sets[parity_]) {
     vkCmdBindDescriptorSets(commands, point, layout, pass_set, 1, &pass.sets[parity_], 0, nullptr);
   }
@@ -179,6 +178,18 @@ void FramePlan::bind(const Pass& pass, VkCommandBuffer commands) {
     pass.constants(bytes.data());
     vkCmdPushConstants(commands, layout, pass.program->stages(), 0,
                        static_cast<std::uint32_t>(pass.constants_size), bytes.data());
+  }
+}
+
+void FramePlan::bind_shared_sets(const Pass& pass, VkCommandBuffer commands) {
+  for (const SharedSet& shared : shared_sets_) {
+    if (!pass.program->uses_set(shared.number)) continue;
+    const bool replaced = std::ranges::any_of(shared_sets_, [&](const SharedSet& other) {
+      return other.number == shared.number && other.side == pass.side;
+    });
+    if (replaced ? shared.side != pass.side : shared.side != 1) continue;
+    vkCmdBindDescriptorSets(commands, pass.bind_point(), pass.program->layout(), shared.number, 1,
+                            &shared.set, 0, nullptr);
   }
 }
 

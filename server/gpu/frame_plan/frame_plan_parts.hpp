@@ -59,6 +59,7 @@ struct FramePlan::Pass {
   std::optional<Attachment> depth;
   std::optional<std::pair<std::uint32_t, VkDeviceSize>> indirect;
   FrameSize threads{0, 0};
+  std::uint32_t side = 1;  // of the squares of pixels that it has one texel for
   std::uint32_t layers = 1;
   std::size_t constants_size = 0;
   std::function<void(std::byte*)> constants;

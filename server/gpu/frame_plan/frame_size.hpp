@@ -20,6 +20,10 @@ class FrameSize {
   }
 
   bool follows_frame() const { return side_ > 0; }
+  /// The same for frames of one texel for each square of `side` by `side` pixels.
+  FrameSize reduced(std::uint32_t side) const {
+    return follows_frame() ? squares(side_ * side) : *this;
+  }
   /// Where frames have this size.
   VkExtent2D of(VkExtent2D frame) const {
     if (!follows_frame()) return fixed_;

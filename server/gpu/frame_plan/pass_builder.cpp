@@ -57,7 +57,7 @@ PassBuilder& PassBuilder::depth(ImageRef image, float clear) {
 }
 
 PassBuilder& PassBuilder::dispatch(FrameSize threads, std::uint32_t layers) {
-  plan_.passes_[pass_].threads = threads;
+  plan_.passes_[pass_].threads = threads.reduced(plan_.passes_[pass_].side);
   plan_.passes_[pass_].layers = layers;
   return *this;
 }

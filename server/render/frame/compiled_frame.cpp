@@ -12,12 +12,12 @@
 namespace heliograph::render {
 
 CompiledFrame::CompiledFrame(const Engine::Parts& parts, const FrameInputs& in,
-                             const gpu::Buffer& constants_buffer, VkExtent2D extent,
+                             const FrameConstantsBuffers& constants_buffers, VkExtent2D extent,
                              bool keeps_buffers)
-    : inputs(in), pool(parts.device, 2, 16), plan(parts.device, extent) {
+    : inputs(in), pool(parts.device, 3, 24), plan(parts.device, extent) {
   plan.use_host_kernels(parts.host_kernels);
   plan.share_memory();
-  share_sets(parts, constants_buffer);
+  share_sets(parts, constants_buffers);
   outputs = declare_frame(plan, inputs);
   plan.read_back(outputs.output);
   plan.keep(outputs.radiance);
@@ -27,11 +27,16 @@ CompiledFrame::CompiledFrame(const Engine::Parts& parts, const FrameInputs& in,
   list_buffers();
 }
 
-void CompiledFrame::share_sets(const Engine::Parts& parts, const gpu::Buffer& constants_buffer) {
-  const VkDescriptorSet set = pool.allocate(parts.programs.frame_layout.handle());
-  write_frame_set(parts, set, constants_buffer, inputs.tables.lights,
-                  inputs.moving.environment().view(inputs.settings.environment.separate_sun));
-  plan.share_set(frame_set, set);
+void CompiledFrame::share_sets(const Engine::Parts& parts,
+                               const FrameConstantsBuffers& constants_buffers) {
+  const auto share = [&](const gpu::Buffer& constants, std::uint32_t side) {
+    const VkDescriptorSet set = pool.allocate(parts.programs.frame_layout.handle());
+    write_frame_set(parts, set, constants, inputs.tables.lights,
+                    inputs.moving.environment().view(inputs.settings.environment.separate_sun));
+    plan.share_set(frame_set, set, side);
+  };
+  share(constants_buffers.whole, 1);
+  share(constants_buffers.half, 2);
   const VkDescriptorSet tables = pool.allocate(parts.programs.scene_layout.handle());
   write_scene_set(parts.device, tables, inputs.tables, inputs.scene.texture_heap,
                   inputs.scene.layers, inputs.moving.emissive());

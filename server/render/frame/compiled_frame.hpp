@@ -8,16 +8,18 @@
 #include "render/api/frame_values.hpp"
 #include "render/frame/engine_parts.hpp"
 #include "render/frame/frame.hpp"
+#include "render/frame/frame_constants.hpp"
 
 namespace heliograph::render {
 
 /// The plan of a frame with the resources that it keeps alive: one scene at one size, made of the
 /// passes that the settings asked for when it was made.
 struct CompiledFrame {
-  /// References in `inputs`, and `constants_buffer`, outlive this. `keeps_buffers`: whether all
+  /// References in `inputs`, and `constants_buffers`, outlive this. `keeps_buffers`: whether all
   /// images can be read after a frame, or just the output and the histories.
   CompiledFrame(const Engine::Parts& parts, const FrameInputs& inputs,
-                const gpu::Buffer& constants_buffer, VkExtent2D extent, bool keeps_buffers);
+                const FrameConstantsBuffers& constants_buffers, VkExtent2D extent,
+                bool keeps_buffers);
 
   /// An image as of the last frame, and how much of it, from the first texel, was drawn.
   struct DrawnImage {
@@ -35,7 +37,7 @@ struct CompiledFrame {
   std::vector<BufferInfo> buffers;  // that a view or a capture may name, the output first
 
  private:
-  void share_sets(const Engine::Parts& parts, const gpu::Buffer& constants_buffer);
+  void share_sets(const Engine::Parts& parts, const FrameConstantsBuffers& constants_buffers);
   void list_buffers();
 };
 

@@ -1,6 +1,7 @@
 #include "render/frame/frame_constants.hpp"
 
 #include <cmath>
+#include <cstring>
 #include <glm/gtc/constants.hpp>
 
 #include "render/resources/moving_scene.hpp"
@@ -97,6 +98,29 @@ shared::FrameConstants make_frame_constants(const scene::Camera& camera,
       diameter < 0.0f ? -1.0f : std::tan(glm::radians(0.5f * diameter));
   add_environment(constants, scene.environment().view(settings.environment.separate_sun));
   return constants;
+}
+
+shared::FrameConstants at_half_size(const shared::FrameConstants& frame) {
+  shared::FrameConstants half = frame;
+  half.extent = (frame.extent + 1u) / 2u;
+  // A border that cuts squares in two lies inside the last of them.
+  const glm::vec2 scale = 2.0f * glm::vec2(half.extent) / glm::vec2(frame.extent);
+  const glm::vec2 slope(frame.unproject.x, frame.unproject.y);
+  const glm::vec2 offset(frame.unproject.z, frame.unproject.w);
+  half.unproject = {slope * scale, offset + slope * (scale - 1.0f)};
+  return half;
+}
+
+FrameConstantsBuffers::FrameConstantsBuffers(const gpu::Device& device)
+    : whole(device, "frame constants", sizeof(shared::FrameConstants),
+            VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::upload),
+      half(device, "frame constants at half size", sizeof(shared::FrameConstants),
+           VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::upload) {}
+
+void FrameConstantsBuffers::upload(const shared::FrameConstants& constants,
+                                   const shared::FrameConstants& half_constants) {
+  std::memcpy(whole.mapped(), &constants, sizeof constants);
+  std::memcpy(half.mapped(), &half_constants, sizeof half_constants);
 }
 
 }  // namespace heliograph::render

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gpu/memory/buffer.hpp"
 #include "gpu/memory/image.hpp"
 #include "protocol/settings/settings.hpp"
 #include "scene/camera.hpp"
@@ -25,5 +26,19 @@ shared::FrameConstants make_frame_constants(const scene::Camera& camera,
                                             const MovingScene& scene, const FrameSizes& sizes,
                                             std::uint32_t sample,
                                             const shared::FrameConstants* before);
+
+/// Of the same frame with one texel for each square of 2x2 pixels, also for those that the border
+/// cuts: a texel is seen at the middle of its square.
+shared::FrameConstants at_half_size(const shared::FrameConstants& frame);
+
+/// The uniform blocks of a frame for the device.
+struct FrameConstantsBuffers {
+  explicit FrameConstantsBuffers(const gpu::Device& device);
+  void upload(const shared::FrameConstants& constants,
+              const shared::FrameConstants& half_constants);
+
+  gpu::Buffer whole;
+  gpu::Buffer half;  // at_half_size()
+};
 
 }  // namespace heliograph::render

@@ -54,10 +54,7 @@ std::uint32_t drawn_side(std::uint32_t side, float scale) {
 
 struct Renderer::State {
   State(Engine::Parts& engine, std::shared_ptr<const SceneResources> empty)
-      : parts(engine),
-        nothing(std::move(empty)),
-        constants_buffer(engine.device, "frame constants", sizeof(shared::FrameConstants),
-                         VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, gpu::Memory::upload) {}
+      : parts(engine), nothing(std::move(empty)), constants_buffers(engine.device) {}
 
   void rebuild_frame_plan();
   VkExtent2D drawn() const;
@@ -85,8 +82,9 @@ struct Renderer::State {
 
   Engine::Parts& parts;
   std::shared_ptr<const SceneResources> nothing;  // the empty scene
-  gpu::Buffer constants_buffer;
+  FrameConstantsBuffers constants_buffers;
   shared::FrameConstants constants{};
+  shared::FrameConstants half_constants{};  // at_half_size()
   bool has_previous = false;
   std::uint32_t sample_index = 0;  // frames since the history was invalidated
   FrameClock clock;
@@ -116,6 +114,7 @@ void Renderer::State::rebuild_frame_plan() {
                            *parts.tracer,
                            moving->structure(),
                            constants,
+                           half_constants,
                            settings,
                            clock,
                            *moving,
@@ -125,7 +124,7 @@ void Renderer::State::rebuild_frame_plan() {
                            parts.ltc_table,
                            extent};
   compiled =
-      std::make_unique<CompiledFrame>(parts, inputs, constants_buffer, extent, buffers_needed());
+      std::make_unique<CompiledFrame>(parts, inputs, constants_buffers, extent, buffers_needed());
   compiled->plan.set_drawn(drawn());
   has_buffers = false;
   has_previous = false;
@@ -329,7 +328,8 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
     state.scene_motion.still_frames = still + 1;
   }
   state.has_previous = true;
-  std::memcpy(state.constants_buffer.mapped(), &state.constants, sizeof state.constants);
+  state.half_constants = at_half_size(state.constants);
+  state.constants_buffers.upload(state.constants, state.half_constants);
   if (!state.compiled->plan.execute(canceled)) {
     state.constants = before;
     state.has_previous = had_previous;

@@ -5,6 +5,7 @@
 #define HWY_TARGET_INCLUDE "render/kernels/visibility_halve.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/denoise/pixel_pairs.hpp"
 #include "render/kernels/simd/denoise/surface_plane.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -110,49 +111,14 @@ class Halving {
         .lowered(of_normal, q.w, dx, dy, apart, job_.constants.depth_sigma);
   }
 
-  /// The left and the right pixels of the squares from `x` on, in row `y` of the frame. Where the
-  /// border cuts the last square, its right pixel shows nothing.
+  /// The left and the right pixels of the squares from `x` on, in row `y` of the frame.
   HWY_INLINE void load_pairs(int x, int y, std::array<Pixels, 2>& pair) const {
-    const float* guide = row_of<const float>(job_.guide, y) + 8 * x;
-    const float* slope = row_of<const float>(job_.depth_slope, y) + 4 * x;
-    const float* signal = row_of<const float>(job_.signal, y) + 8 * x;
-    constexpr std::size_t most = 2 * hn::MaxLanes(D());
-    std::array<float, 4 * most> guides, signals;
-    std::array<float, 2 * most> slopes;
-    const int lanes = static_cast<int>(hn::Lanes(d_)), pixels = job_.width - 2 * x;
-    if (pixels < 2 * lanes) {
-      guide = copied(guide, 4 * pixels, guides);
-      slope = copied(slope, 2 * pixels, slopes);
-      signal = copied(signal, 4 * pixels, signals);
+    const PixelPairs<D> from(job_.width, x, y);
+    const auto guide = from.four(job_.guide), signal = from.four(job_.signal);
+    const auto slope = from.two(job_.depth_slope);
+    for (std::size_t i = 0; i < 2; ++i) {
+      pair[i] = {guide[i], slope[i], signal[i], hn::Gt(guide[i].w, hn::Zero(d_))};
     }
-    split(load4(d_, guide), load4(d_, guide + 4 * lanes), pair[0].guide, pair[1].guide);
-    split(load4(d_, signal), load4(d_, signal + 4 * lanes), pair[0].signal, pair[1].signal);
-    const Pair<V> low = load2(d_, slope), high = load2(d_, slope + 2 * lanes);
-    split(low.x, high.x, pair[0].slope.x, pair[1].slope.x);
-    split(low.y, high.y, pair[0].slope.y, pair[1].slope.y);
-    for (Pixels& one : pair) one.seen = hn::Gt(one.guide.w, hn::Zero(d_));
-  }
-  template <std::size_t size>
-  static const float* copied(const float* from, int count, std::array<float, size>& to) {
-    std::fill(std::copy_n(from, count, to.begin()), to.end(), 0.0f);
-    return to.data();
-  }
-  HWY_INLINE void split(V low, V high, V& even, V& odd) const {
-    even = low;
-    odd = high;
-#if HWY_TARGET != HWY_SCALAR
-    if constexpr (hn::MaxLanes(D()) > 1) {
-      even = hn::ConcatEven(d_, high, low);
-      odd = hn::ConcatOdd(d_, high, low);
-    }
-#endif
-  }
-  HWY_INLINE void split(const Quad<V>& low, const Quad<V>& high, Quad<V>& even,
-                        Quad<V>& odd) const {
-    split(low.x, high.x, even.x, odd.x);
-    split(low.y, high.y, even.y, odd.y);
-    split(low.z, high.z, even.z, odd.z);
-    split(low.w, high.w, even.w, odd.w);
   }
 
   const D d_{};

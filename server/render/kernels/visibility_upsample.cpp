@@ -5,76 +5,12 @@
 #define HWY_TARGET_INCLUDE "render/kernels/visibility_upsample.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/denoise/half_rows.hpp"
 #include "render/kernels/simd/denoise/surface_plane.hpp"
-#include "render/kernels/simd/guide.hpp"
 #include "render/kernels/simd/signal_rows.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
-
-/// Rows of texels of half size in planes, every texel twice: the two about a pixel lie one column
-/// before it and one behind it.
-template <class D>
-class HalfRows {
-  using V = hn::Vec<D>;
-
- public:
-  enum Plane { normal_x, normal_y, normal_z, view_z, signal, planes = signal + 4 };
-
-  HalfRows(const VisibilityUpsampleJob& job, int first)
-      : job_(job),
-        width_((job.width + 1) / 2),
-        height_((job.height + 1) / 2),
-        next_(std::max(first, 0)),
-        ring_(planes, 2 * width_, 1, 2) {}
-
-  HWY_INLINE void advance(int last) {
-    for (; next_ <= std::min(last, height_ - 1); ++next_) fill(next_);
-  }
-  bool has(int y) const { return y >= 0 && y < height_; }
-  HWY_INLINE const float* row(int y) const { return ring_.row(y); }
-  HWY_INLINE V load(const float* texels, int plane) const {
-    return hn::LoadU(d_, texels + plane * ring_.pitch());
-  }
-
- private:
-  HWY_INLINE void fill(int y) const {
-    const int lanes = static_cast<int>(hn::Lanes(d_));
-    const float* const guide = row_of<const float>(job_.half_guide, y);
-    const float* const from = row_of<const float>(job_.half_signal, y);
-    for (int start = 0; start < width_; start += lanes) {
-      const int x = std::min(start, width_ - lanes);
-      float* const to = ring_.row(y) + 2 * x;
-      const auto surface = decode_guide(load4(d_, guide + 4 * x));
-      const Quad<V> value = load4(d_, from + 4 * x);
-      store_twice(surface.normal.x, to, normal_x);
-      store_twice(surface.normal.y, to, normal_y);
-      store_twice(surface.normal.z, to, normal_z);
-      store_twice(surface.view_z, to, view_z);
-      store_twice(value.x, to, signal);
-      store_twice(value.y, to, signal + 1);
-      store_twice(value.z, to, signal + 2);
-      store_twice(value.w, to, signal + 3);
-    }
-  }
-  HWY_INLINE void store_twice(V value, float* texels, int plane) const {
-    const int lanes = static_cast<int>(hn::Lanes(d_));
-    float* const to = texels + plane * ring_.pitch();
-    const auto part = [&](int first) HWY_ATTR {
-      const hn::RebindToSigned<D> di;
-      const auto from = hn::ShiftRight<1>(hn::Iota(di, first));
-      return hn::TableLookupLanes(value, hn::IndicesFromVec(d_, from));
-    };
-    hn::StoreU(part(0), d_, to);
-    hn::StoreU(lanes == 1 ? value : part(lanes), d_, to + lanes);
-  }
-
-  const D d_{};
-  const VisibilityUpsampleJob& job_;
-  int width_, height_;
-  int next_;  // row that is not there yet
-  RowRing ring_;
-};
 
 /// Lanes are pixels side by side.
 template <class D>
@@ -85,19 +21,13 @@ class Upsampling {
 
   /// All exponents count octaves.
   struct Center {
-    Triple<V> normal;  // times the power
-    SurfacePlane<V> plane;
+    HalfWeights<D> surface;
     V value[2];
     V inv_sigma[2];  // 1 / what a difference of visibility may be
   };
   struct Sums {
     Quad<V> value;
     V total[2];
-  };
-  /// Of a texel as seen from the pixels of one side: how far away, and its bilinear weight.
-  struct Side {
-    V offset;
-    V nearness;
   };
 
  public:
@@ -107,7 +37,7 @@ class Upsampling {
     const int lanes = static_cast<int>(hn::Lanes(d_));
     Rows rows(job_.guide, job_.signal, job_.width, job_.height,
               Area{0, job_.width, std::max(first - 1, 0), last}, RowReach{1, 1, 1});
-    HalfRows<D> halves(job_, (first - 1) >> 1);
+    HalfRows<D> halves(job_.half_guide, job_.half_signal, half_size(), (first - 1) >> 1);
     for (int y = first; y < last; ++y) {
       rows.advance(y);
       halves.advance((y + 1) >> 1);
@@ -121,6 +51,7 @@ class Upsampling {
 
  private:
   HWY_INLINE V set(float value) const { return hn::Set(d_, value); }
+  glm::ivec2 half_size() const { return {(job_.width + 1) / 2, (job_.height + 1) / 2}; }
   bool prefilters() const { return (c_.flags & shared::atrous_variance_prefilter) != 0; }
 
   HWY_INLINE void block(const Rows& rows, const HalfRows<D>& halves, const ViewedRow<D>& view,
@@ -138,8 +69,8 @@ class Upsampling {
         const int row = (y + side) >> 1;
         if (!halves.has(row)) continue;
         const float dy = static_cast<float>(2 * row - y), near = row == y >> 1 ? 0.75f : 0.25f;
-        add_texel(c, halves, halves.row(row) + x - 1, of_column(x, -1), dy, near, sums);
-        add_texel(c, halves, halves.row(row) + x + 1, of_column(x, 1), dy, near, sums);
+        add_texel(c, halves, halves.row(row) + x - 1, half_column(d_, x, -1), dy, near, sums);
+        add_texel(c, halves, halves.row(row) + x + 1, half_column(d_, x, 1), dy, near, sums);
       }
       denoised = select(seen, result(sums), value);
     }
@@ -149,13 +80,11 @@ class Upsampling {
   HWY_INLINE Center center(const Rows& rows, const ViewedRow<D>& view, const Quad<V>& value, int x,
                            int y) const {
     const float* const texels = rows.row(y) + x;
-    Center c;
-    const V power = set(c_.normal_power * octaves);
-    c.normal = Triple<V>{rows.load(texels, Rows::normal_x), rows.load(texels, Rows::normal_y),
-                         rows.load(texels, Rows::normal_z)} *
-               power;
-    c.plane = surface_plane(view, rows.load(texels, Rows::view_z),
-                            load2(d_, row_of<const float>(job_.depth_slope, y) + 2 * x));
+    const Triple<V> normal{rows.load(texels, Rows::normal_x), rows.load(texels, Rows::normal_y),
+                           rows.load(texels, Rows::normal_z)};
+    const auto plane = surface_plane(view, rows.load(texels, Rows::view_z),
+                                     load2(d_, row_of<const float>(job_.depth_slope, y) + 2 * x));
+    Center c{{normal, plane, c_.normal_power, c_.depth_sigma}, {}, {}};
     c.value[0] = value.x;
     c.value[1] = value.y;
     for (int i = 0; i < 2; ++i) {
@@ -167,28 +96,13 @@ class Upsampling {
     return c;
   }
 
-  /// Of the texels left (-1) or right (1) of the pixels from `x` on.
-  HWY_INLINE Side of_column(int x, int side) const {
-    const hn::RebindToSigned<D> di;
-    const auto pixel = hn::Iota(di, x);
-    const auto texel = hn::ShiftRight<1>(pixel + hn::Set(di, side));
-    const M within = hn::RebindMask(d_, hn::Eq(texel, hn::ShiftRight<1>(pixel)));
-    return {hn::ConvertTo(d_, texel + texel - pixel),
-            hn::IfThenElse(within, set(0.75f), set(0.25f))};
-  }
-
   HWY_INLINE void add_texel(const Center& c, const HalfRows<D>& halves, const float* texels,
-                            const Side& column, float dy, float nearness_down, Sums& sums) const {
+                            const HalfColumn<V>& column, float dy, float nearness_down,
+                            Sums& sums) const {
     using Half = HalfRows<D>;
     const V z = halves.load(texels, Half::view_z);
     const M valid = hn::Gt(z, hn::Zero(d_));
-    V exponent = hn::MulAdd(c.normal.x, halves.load(texels, Half::normal_x),
-                            set(weight_one - c_.normal_power * octaves));
-    exponent = hn::MulAdd(c.normal.y, halves.load(texels, Half::normal_y), exponent);
-    exponent = hn::MulAdd(c.normal.z, halves.load(texels, Half::normal_z), exponent);
-    const V apart =
-        hn::Max(hn::Sqrt(hn::MulAdd(column.offset, column.offset, set(dy * dy))), set(1.0f));
-    exponent = c.plane.lowered(exponent, z, column.offset, set(dy), apart, c_.depth_sigma);
+    const V exponent = c.surface.exponent(halves, texels, z, column, dy);
     const V nearness = column.nearness * set(nearness_down);
     for (int i = 0; i < 2; ++i) {
       const V value = halves.load(texels, Half::signal + i);

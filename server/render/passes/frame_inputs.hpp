@@ -25,6 +25,9 @@ struct FrameClock {
   /// How many samples a static view's histories brought along, as a part of what they count: less
   /// than 1 where they come from frames that were drawn smaller.
   float carried_share = 1.0f;
+
+  /// Whether so few frames have passed that all light is still uncertain.
+  bool is_young() const { return age < 24; }
 };
 
 inline glm::uvec2 size_of(VkExtent2D extent) {
@@ -40,6 +43,7 @@ struct FrameInputs {
   const tracing::RayTracer& tracer;
   const tracing::AccelerationStructure& structure;  // in the pose of this frame: trace this
   const shared::FrameConstants& constants;
+  const shared::FrameConstants& half_constants;  // of this frame at half the size
   /// A setting that resets the structure may decide which passes are declared; every other one is
   /// read when a pass runs.
   const protocol::Settings& settings;
@@ -51,6 +55,13 @@ struct FrameInputs {
   const gpu::Image& sheen_table;      // r32f
   const gpu::Image& ltc_table;        // rgba32f
   VkExtent2D shown;                   // size of the finished frame, pixels
+
+  /// For passes that the plan reduces by 2.
+  FrameInputs at_half_size() const {
+    return {programs,       scene,           tables,      tracer,    structure,
+            half_constants, half_constants,  settings,    clock,     moving,
+            scene_motion,   split_sum_table, sheen_table, ltc_table, shown};
+  }
 
   /// Whether this frame is drawn smaller than it is shown.
   bool is_reduced() const { return constants.extent != size_of(shown); }

@@ -1,10 +1,13 @@
 #include "render/kernels/indirect/radiance_cache.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
 #include <tuple>
+
+#include "hwy/cache_control.h"
 
 namespace heliograph::render::kernels {
 namespace {
@@ -43,11 +46,6 @@ std::uint32_t normal_axis(const vec3& n) {
   return n.z >= 0.0f ? 4 : 5;
 }
 
-struct CellKey {
-  std::uint32_t first;
-  std::uint32_t check;
-};
-
 CellKey cell_key(const vec3& position, const vec3& normal, int level) {
   const vec3 cell = glm::floor(position * std::ldexp(1.0f, -level));
   uvec3 hashed = pcg3d(uvec3(glm::ivec3(cell)));
@@ -72,27 +70,62 @@ std::uint32_t priority_of(const vec3& position, std::uint32_t frame_number) {
 
 }  // namespace
 
-CachedLight CacheReader::find(const vec3& position, const vec3& normal, float t,
-                              std::uint32_t order, std::vector<CacheTouch>& touches) const {
+CacheReader::Lookup CacheReader::begin(const CacheQuery& ray) const {
   const shared::RadianceCacheConstants& c = constants_;
-  const int coarse = level_of(std::max(glm::distance(position, eye_) * c.cell_angle, c.least_size));
-  int level = std::clamp(level_of(std::max(t * c.cell_fraction, c.least_size)),
-                         coarse - shared::finer_levels, coarse);
+  Lookup made;
+  const float seen_from_eye = glm::distance(ray.position, eye_) * c.cell_angle;
+  made.coarse = level_of(std::max(seen_from_eye, c.least_size));
+  const int level = std::clamp(level_of(std::max(ray.t * c.cell_fraction, c.least_size)),
+                               made.coarse - shared::finer_levels, made.coarse);
+  look_at(ray, level, made);
+  hwy::Prefetch(keys_ + made.key.first);
+  return made;
+}
+
+void CacheReader::look_at(const CacheQuery& ray, int level, Lookup& lookup) const {
+  lookup.level = level;
+  lookup.key = cell_key(ray.position, ray.normal, level);
+}
+
+void CacheReader::touch(const CacheQuery& ray, const Lookup& lookup,
+                        std::vector<CacheTouch>& touches) const {
+  const std::uint32_t priority = priority_of(ray.position, constants_.frame_number);
+  if (lookup.slot == no_cell || priority > 0) {
+    touches.push_back(
+        {priority, ray.order, lookup.key.first, lookup.key.check, ray.position, ray.normal});
+  }
+  if (lookup.slot == no_cell) return;
+  // A store would take the cell from the other processors' caches, even of the same value.
+  const std::atomic_ref last_used(cells_[lookup.slot].last_used);
+  if (last_used.load(std::memory_order_relaxed) != constants_.frame_number) {
+    last_used.store(constants_.frame_number, std::memory_order_relaxed);
+  }
+}
+
+CachedLight CacheReader::read(const CacheQuery& ray, Lookup& lookup,
+                              std::vector<CacheTouch>& touches) const {
   while (true) {
-    const CellKey key = cell_key(position, normal, level);
-    const std::uint32_t slot = find_slot(keys_, key);
-    const std::uint32_t priority = priority_of(position, c.frame_number);
-    if (slot == no_cell || priority > 0) {
-      touches.push_back({priority, order, key.first, key.check, position, normal});
-    }
-    if (slot != no_cell) {
-      shared::RadianceCell& cell = cells_[slot];
-      std::atomic_ref(cell.last_used).store(c.frame_number, std::memory_order_relaxed);
+    touch(ray, lookup, touches);
+    if (lookup.slot != no_cell) {
+      const shared::RadianceCell& cell = cells_[lookup.slot];
       if (cell.samples > 0) return {cell.direct, cell.indirect, true};
     }
-    if (level == coarse) return {};
-    level = coarse;
+    if (lookup.level == lookup.coarse) return {};
+    look_at(ray, lookup.coarse, lookup);
+    lookup.slot = find_slot(keys_, lookup.key);
   }
+}
+
+// All rays wait for memory together.
+void CacheReader::find(std::span<const CacheQuery> rays, CachedLight* light,
+                       std::vector<CacheTouch>& touches) const {
+  std::array<Lookup, most_cache_queries> lookups;
+  for (std::size_t i = 0; i < rays.size(); ++i) lookups[i] = begin(rays[i]);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    lookups[i].slot = find_slot(keys_, lookups[i].key);
+    if (lookups[i].slot != no_cell) hwy::Prefetch(cells_ + lookups[i].slot);
+  }
+  for (std::size_t i = 0; i < rays.size(); ++i) light[i] = read(rays[i], lookups[i], touches);
 }
 
 void CacheReader::add(std::span<const CacheTouch> touches) {

@@ -24,6 +24,23 @@ struct CacheTouch {
   glm::vec3 normal;
 };
 
+/// How many rays ask together, at most.
+inline constexpr std::size_t most_cache_queries = 64;
+
+/// A ray that asks for light at its hit: at `position`, with the geometric `normal`, world, after
+/// `t` metres.
+struct CacheQuery {
+  glm::vec3 position;
+  glm::vec3 normal;
+  float t;
+  std::uint32_t order;
+};
+
+struct CellKey {
+  std::uint32_t first;  // slot of its bucket
+  std::uint32_t check;
+};
+
 /// Irradiance / pi.
 struct CachedLight {
   glm::vec3 direct{0.0f};
@@ -39,16 +56,27 @@ class CacheReader {
               const shared::RadianceCacheConstants& constants, const glm::vec3& eye)
       : keys_(keys), cells_(cells), constants_(constants), eye_(eye) {}
 
-  /// Of the cell at `position` with the geometric `normal`, world, for a ray of length `t`, metres.
-  /// `touches` gets the cells that are to be made or moved. Thread safe.
-  CachedLight find(const glm::vec3& position, const glm::vec3& normal, float t, std::uint32_t order,
-                   std::vector<CacheTouch>& touches) const;
+  /// Light at the hit of every ray. `touches` gets the cells that are to be made or moved. Thread
+  /// safe.
+  void find(std::span<const CacheQuery> rays, CachedLight* light,
+            std::vector<CacheTouch>& touches) const;
   /// Thread safe.
   void add(std::span<const CacheTouch> touches);
   /// After all threads are done.
   void apply();
 
  private:
+  /// The cells that a ray may read: of its own size, and where that knows nothing, the eye's.
+  struct Lookup {
+    int level, coarse;
+    CellKey key;
+    std::uint32_t slot;
+  };
+  Lookup begin(const CacheQuery& ray) const;
+  void look_at(const CacheQuery& ray, int level, Lookup& lookup) const;
+  void touch(const CacheQuery& ray, const Lookup& lookup, std::vector<CacheTouch>& touches) const;
+  CachedLight read(const CacheQuery& ray, Lookup& lookup, std::vector<CacheTouch>& touches) const;
+
   std::uint32_t* keys_;
   shared::RadianceCell* cells_;
   shared::RadianceCacheConstants constants_;

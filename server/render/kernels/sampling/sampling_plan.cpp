@@ -49,10 +49,13 @@ class Planning {
     return hn::And(place + whole(turn_ + ahead), whole(shared::plan_turns - 1));
   }
 
+  HWY_INLINE MI has_turn(VI turn, VI frames) const {
+    return hn::Lt(hn::Mul(turn, frames), whole(shared::plan_turns));
+  }
+
   HWY_INLINE MI is_sampled(V frames, VI most, VI turn) const {
     const M full = hn::Lt(frames, set(job_.constants.full_frames));
-    const MI in_turn = hn::Lt(hn::Mul(turn, most), whole(shared::plan_turns));
-    return hn::Or(hn::RebindMask(di_, full), in_turn);
+    return hn::Or(hn::RebindMask(di_, full), has_turn(turn, most));
   }
 
   /// A history counts for more where single samples hardly differ.
@@ -100,8 +103,10 @@ class Planning {
                              hn::Gt(metallic, set(shared::plan_metallic)));
     const auto most = [&](shared::uint count) HWY_ATTR { return whole(static_cast<int>(count)); };
     const VI now = turn(x, y, 0);
-    const MI lit = is_sampled(counted(frames.x, noise.x), most(c.visibility_most), now);
-    const MI open = is_sampled(counted(frames.y, noise.y), most(c.visibility_most), now);
+    const MI lit = is_sampled(counted(frames.x, noise.x), most(c.shadows_most), now);
+    const MI ambient_turn = has_turn(now, most(c.ambient_least));
+    const MI open =
+        hn::And(ambient_turn, is_sampled(counted(frames.y, noise.y), most(c.ambient_most), now));
     const MI mirrored = is_sampled(
         hn::IfThenElse(mirrors, reflected, reflected * set(shared::plan_quiet_factor)),
         hn::IfThenElse(hn::RebindMask(di_, mirrors), most(c.mirrors_most), most(c.specular_most)),
@@ -117,7 +122,9 @@ class Planning {
         hn::IfThenElse(is_faded(roughness, metallic, x, y), whole(static_cast<int>(c.faded)),
                        whole(shared::plan_specular));
     word = hn::Or(word, hn::IfThenElseZero(mirrored, reflection));
-    word = hn::IfThenElse(known, word, whole(shared::plan_all));
+    const VI all = hn::IfThenElse(ambient_turn, whole(shared::plan_all),
+                                  whole(shared::plan_all & ~shared::plan_ambient));
+    word = hn::IfThenElse(known, word, all);
     hn::StoreU(word, di_, row_of<int>(job_.planned, y) + x);
   }
 

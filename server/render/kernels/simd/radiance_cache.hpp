@@ -46,11 +46,20 @@ HWY_INLINE CachedLanes cached_light(const CacheReader& cache, const Float3& posi
   const LaneIndices<Tag> orders(order);
   HWY_ALIGN std::array<float, hn::MaxLanes(Tag())> lengths;
   hn::Store(t, tag, lengths.data());
+  static_assert(hn::MaxLanes(Tag()) <= most_cache_queries);
+  std::array<CacheQuery, hn::MaxLanes(Tag())> rays;
+  std::array<CachedLight, hn::MaxLanes(Tag())> found;
+  std::size_t count = 0;
+  for_each_lane(requested, [&](std::size_t lane) {
+    rays[count++] = {positions.at(lane), normals.at(lane), lengths[lane],
+                     static_cast<std::uint32_t>(orders.of[lane])};
+  });
+  cache.find({rays.data(), count}, found.data(), touches);
   StoredTriples direct(numbers(0.0f)), indirect(numbers(0.0f));
   HWY_ALIGN std::array<float, hn::MaxLanes(Tag())> known{};
+  std::size_t next = 0;
   for_each_lane(requested, [&](std::size_t lane) {
-    const CachedLight light = cache.find(positions.at(lane), normals.at(lane), lengths[lane],
-                                         static_cast<std::uint32_t>(orders.of[lane]), touches);
+    const CachedLight& light = found[next++];
     direct.put(lane, light.direct);
     indirect.put(lane, light.indirect);
     known[lane] = light.known ? 1.0f : 0.0f;

@@ -1,7 +1,9 @@
 #include "render/passes/denoise/denoise_indirect.hpp"
 
+#include "render/kernels/indirect/indirect_half.hpp"
 #include "render/passes/denoise/atrous.hpp"
 #include "render/passes/denoise/denoise_constants.hpp"
+#include "render/passes/formats.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
@@ -25,10 +27,9 @@ AtrousConfig indirect_atrous_config(const FrameInputs& in) {
           constants};
 }
 
-}  // namespace
-
-gpu::ImageRef denoise_indirect(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                               const Guide& guide, gpu::ImageRef noisy) {
+/// At the size of `noisy` and of what guides it.
+gpu::ImageRef denoise(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                      const Guide& guide, gpu::ImageRef noisy) {
   const auto& blurring = in.settings.indirect_blur;
   const bool feedback =
       blurring.enabled && blurring.feedback >= 0 && blurring.feedback < blurring.iterations;
@@ -43,6 +44,82 @@ gpu::ImageRef denoise_indirect(gpu::FramePlan& plan, const FrameInputs& in, cons
   return blur(plan, in, {guide.surface, gbuffer.depth_slope, accumulated.signal},
               indirect_atrous_config(in),
               feedback ? std::optional(Feedback{blurring.feedback, feed_back}) : std::nullopt);
+}
+
+struct Halved {
+  GBuffer gbuffer;  // as far as denoisers read it
+  gpu::ImageRef radiance;
+};
+
+Halved halve(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+             gpu::ImageRef noisy) {
+  const auto& buffers = indirect_half_buffers;
+  const auto size = gpu::FrameSize::squares(2);
+  const auto history = [&](const BufferDescription& buffer, VkFormat format) {
+    return plan.history(buffer.name, format, 0, size);
+  };
+  const gpu::History normals = history(buffers.normals, formats::four_floats);
+  const gpu::History motion = history(buffers.motion, formats::four_floats);
+  const gpu::History instance = history(buffers.instance, VK_FORMAT_R32_UINT);
+  const auto surface = plan.image(buffers.surface.name, VK_FORMAT_R8G8B8A8_UNORM, 0, size);
+  const auto slope = plan.image(buffers.depth_slope.name, VK_FORMAT_R32G32_SFLOAT, 0, size);
+  const auto radiance = plan.image(buffers.radiance.name, formats::four_floats, 0, size);
+  plan.pass("indirect.halve", in.program(shaders::indirect_halve))
+      .bind<kernels::IndirectHalveBindings>({.normals = gbuffer.normals,
+                                             .motion = gbuffer.motion,
+                                             .depth_slope = gbuffer.depth_slope,
+                                             .instance = gbuffer.instance,
+                                             .radiance = noisy,
+                                             .half_normals = normals.current,
+                                             .half_motion = motion.current,
+                                             .half_slope = slope,
+                                             .half_instance = instance.current,
+                                             .half_surface = surface,
+                                             .half_radiance = radiance})
+      .dispatch(size)
+      .host(kernels::indirect_halve, in.constants);
+  GBuffer half;
+  half.normals = normals.current;
+  half.motion = motion.current;
+  half.instance = instance.current;
+  half.surface = half.previous_surface = surface;
+  half.depth_slope = slope;
+  half.previous_normals = normals.previous;
+  half.previous_motion = motion.previous;
+  half.previous_instance = instance.previous;
+  return {half, radiance};
+}
+
+gpu::ImageRef upsample(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                       const Guide& guide, const Guide& half_guide, gpu::ImageRef half) {
+  const auto denoised = plan.image(indirect_half_buffers.upsampled.name, formats::four_floats);
+  plan.pass("indirect.upsample", in.program(shaders::indirect_upsample))
+      .bind<kernels::IndirectUpsampleBindings>({.guide = guide.surface,
+                                                .depth_slope = gbuffer.depth_slope,
+                                                .half_guide = half_guide.surface,
+                                                .half_signal = half,
+                                                .denoised = denoised})
+      .constants([in] { return atrous_constants(in.settings.indirect_blur, in.scene_motion, {}); })
+      .dispatch(gpu::each_pixel())
+      .host(kernels::indirect_upsample, in.constants);
+  return denoised;
+}
+
+}  // namespace
+
+gpu::ImageRef denoise_indirect(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                               const Guide& guide, gpu::ImageRef noisy) {
+  if (!in.settings.indirect.half_resolution) return denoise(plan, in, gbuffer, guide, noisy);
+  const Halved half = halve(plan, in, gbuffer, noisy);
+  Guide half_guide;
+  gpu::ImageRef denoised;
+  plan.reduced(2, [&] {
+    const FrameInputs half_in = in.at_half_size();
+    half_guide =
+        reproject(plan, half_in, half.gbuffer, "indirect.reproject", indirect_reproject_buffers);
+    denoised = denoise(plan, half_in, half.gbuffer, half_guide, half.radiance);
+  });
+  return upsample(plan, in, gbuffer, guide, half_guide, denoised);
 }
 
 }  // namespace heliograph::render

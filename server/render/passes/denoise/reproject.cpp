@@ -7,11 +7,12 @@
 
 namespace heliograph::render {
 
-Guide reproject(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
+Guide reproject(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                const std::string& name, const ReprojectBuffers& buffers) {
   using formats::four_floats;
-  const Guide guide{plan.image(reproject_buffers.guide.name, four_floats),
-                    plan.image(reproject_buffers.motion.name, four_floats)};
-  plan.pass("reproject", in.program(shaders::reproject))
+  const Guide guide{plan.image(buffers.guide.name, four_floats),
+                    plan.image(buffers.motion.name, four_floats)};
+  plan.pass(name, in.program(shaders::reproject))
       .bind<kernels::ReprojectBindings>({.normals = gbuffer.normals,
                                          .surface = gbuffer.surface,
                                          .motion = gbuffer.motion,

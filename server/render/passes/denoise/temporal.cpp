@@ -163,9 +163,8 @@ AccumulatedSignal accumulate_radiance(gpu::FramePlan& plan, const FrameInputs& i
         .constants(constants)
         .dispatch(gpu::each_pixel())
         .host(kernels::specular_rectify, in.constants)
-        // A static view's second frame is the first that samples every pixel.
-        .when([&settings, &clock = in.clock] {
-          return settings.rectification != protocol::Rectification::gradient || clock.samples <= 1;
+        .when([&settings, rectifies = channel.rectifies] {
+          return settings.rectification != protocol::Rectification::gradient || rectifies();
         });
   }
   return {signal, history_length.current, history_length.current, fast_history.current,
@@ -184,23 +183,26 @@ RadianceChannel specular_channel(const FrameInputs& in, const SampleHistories& h
                 return (settings.virtual_motion ? shared::temporal_virtual_motion : 0u) |
                        (settings.curved_reflectors ? shared::temporal_curved_reflectors : 0u);
               },
-          .most_frames = [] { return std::numeric_limits<float>::max(); }};
+          .most_frames = [] { return std::numeric_limits<float>::max(); },
+          // A static view's second frame is the first that samples every pixel.
+          .rectifies = [&clock = in.clock] { return clock.samples <= 1; }};
 }
 
 RadianceChannel indirect_channel(gpu::FramePlan& plan, const FrameInputs& in) {
   const auto& buffers = indirect_temporal_buffers;
   // The first frames know few bounces: the later half of all is enough.
   static constexpr std::uint32_t least_frames = 4;
-  return {.name = "indirect",
-          .buffers = buffers,
-          .settings = in.settings.indirect_temporal,
-          .history = plan.history(buffers.history.name, four_halves),
-          .history_length = plan.history(buffers.history_length.name, four_halves),
-          .flags = [] { return 0u; },
-          .most_frames =
-              [&clock = in.clock] {
-                return static_cast<float>(std::max(clock.age / 2, least_frames));
-              }};
+  return {
+      .name = "indirect",
+      .buffers = buffers,
+      .settings = in.settings.indirect_temporal,
+      .history = plan.history(buffers.history.name, four_halves),
+      .history_length = plan.history(buffers.history_length.name, four_halves),
+      .flags = [] { return 0u; },
+      .most_frames =
+          [&clock = in.clock] { return static_cast<float>(std::max(clock.age / 2, least_frames)); },
+      // It does not depend on the view: it changes only where geometry or lights do.
+      .rectifies = [&motion = in.scene_motion] { return !motion.settled(); }};
 }
 
 void feed_visibility_back(gpu::FramePlan& plan, const FrameInputs& in,

@@ -144,6 +144,7 @@ struct RadianceChannel {
   gpu::History history_length;
   std::function<std::uint32_t()> flags;  // more of them, shared::temporal_*
   std::function<float()> most_frames;    // of history
+  std::function<bool()> rectifies;       // whether what is shown may have changed
 };
 RadianceChannel specular_channel(const FrameInputs& in, const SampleHistories& histories);
 RadianceChannel indirect_channel(gpu::FramePlan& plan, const FrameInputs& in);

@@ -24,8 +24,7 @@ shared::RadianceCacheConstants cache_constants(const FrameInputs& in) {
   made.cell_fraction = 0.5f;
   // A static view has time: nothing waits for its samples. A cache that knows little needs them,
   // and forgets those that were taken before light had gone around.
-  constexpr std::uint32_t young_frames = 24;
-  const bool young = in.clock.age < young_frames;
+  const bool young = in.clock.is_young();
   const float factor = young || in.clock.samples > 0 ? 4.0f : 1.0f;
   made.updates = factor * static_cast<float>(settings.updates);
   made.least_weight = young ? 0.5f : 0.0f;

@@ -34,10 +34,17 @@ shared::SamplingPlanConstants plan_constants(const FrameInputs& in) {
   const auto at_most = [](std::uint32_t frames, bool planned) { return planned ? frames : 1u; };
   const bool fades = plans_specular(s) && in.scene_motion.settled();
   const bool looks_up = s.specular.fade_to == protocol::FadedReflection::environment;
+  const bool gathers_by_squares =
+      s.indirect.enabled && s.indirect.half_resolution && keeps_without_sample(s.indirect_temporal);
+  const bool plans_ambient = s.indirect.enabled
+                                 ? plans_visibility(s) && keeps_without_sample(s.indirect_temporal)
+                                 : plans_visibility(s);
   // Roughness is stored in steps of 1 / 255.
   const float fade_range = std::max(s.specular.fade_end - s.specular.fade_start, 1.0f / 255.0f);
   return {static_cast<float>(s.sampling.full_frames),
           at_most(most, plans_visibility(s)),
+          at_most(most, plans_ambient),
+          gathers_by_squares && !in.clock.is_young() ? 4u : 1u,
           at_most(most, plans_specular(s)),
           at_most(mirrors, plans_specular(s)),
           s.specular.fade_start,
