@@ -49,7 +49,8 @@ constexpr std::array denoiser = std::to_array<std::string_view>(
      "specular.fade_start",   "specular.fade_end",      "specular.fade_fraction",
      "specular.fade_to",      "specular.reuse_shadows", "sampling.visibility",
      "sampling.specular",     "sampling.full_frames",   "sampling.floor",
-     "accumulation.by_noise", "antialiasing.temporal"});
+     "accumulation.by_noise", "antialiasing.temporal",  "indirect",
+     "indirect_temporal",     "indirect_blur"});
 
 /// A patch that resets the denoiser, flattened: null at "/group/name" of each setting.
 json flat_reset() {

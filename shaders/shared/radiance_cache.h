@@ -16,6 +16,8 @@ SHARED_CONSTANT uint cache_new_samples = 4u;
 SHARED_CONSTANT float cache_new_factor = 8.0f;
 // Short rays ask for cells so many times half as large, at most: smaller ones are too many.
 SHARED_CONSTANT int finer_levels = 2;
+// Where a reflection shows a place that has no cell, so much of the sky is taken to light it.
+SHARED_CONSTANT float unknown_openness = 0.5f;
 // One of so many rays moves the cell that it asks for.
 SHARED_CONSTANT uint moves_every = 8u;
 

@@ -26,6 +26,8 @@ SHARED_CONSTANT uint plan_step = 0x9e3779b9u;
 // Single samples of less variance hardly differ: their mean is known after a quarter of the frames.
 SHARED_CONSTANT float plan_quiet_variance = 0.05f;
 SHARED_CONSTANT float plan_quiet_factor = 4.0f;
+// The blur after it makes more of each sample of indirect light.
+SHARED_CONSTANT float indirect_frames_factor = 2.0f;
 // Reflections of smoother surfaces are sharp, those of more metallic ones most of what is seen:
 // both are traced in every second frame at least.
 SHARED_CONSTANT float plan_smooth_roughness = 0.15f;
@@ -40,10 +42,11 @@ SHARED_CONSTANT float expected_albedo = 0.3f;
 SHARED_CONSTANT float shown_depth_tolerance = 0.02f;
 
 struct SamplingPlanConstants {
-  float full_frames;  // shorter histories are sampled in every frame
-  uint shadows_most;  // longer ones once in so many frames
-  uint ambient_most;
-  uint ambient_least;  // and shorter ones, of ambient and indirect light
+  float full_frames;   // shorter histories are sampled in every frame
+  uint shadows_most;   // longer ones once in so many frames
+  uint ambient_most;   // ambient visibility or indirect light
+  uint ambient_least;  // and its shorter ones
+  uint indirect_side;  // pixels per texel of its history's length; 0: that of ambient visibility
   uint specular_most;
   uint mirrors_most;    // of reflections on smooth or metallic surfaces
   float fade_start;     // roughness above which a growing fraction of pixels traces no reflection

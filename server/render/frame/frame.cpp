@@ -34,24 +34,16 @@ struct Reprojected {
   gpu::ImageRef planned;
 };
 
-bool denoises_visibility(const protocol::Settings& s) {
-  return s.shadow_temporal.enabled || s.shadow_blur.enabled;
-}
-bool denoises_specular(const protocol::Settings& s) {
-  return s.specular.enabled && (s.specular_temporal.enabled || s.specular_blur.enabled);
-}
-
-bool denoises_indirect(const protocol::Settings& s) {
-  return s.indirect.enabled && (s.indirect_temporal.enabled || s.indirect_blur.enabled);
-}
-
 Reprojected reproject_and_plan(gpu::FramePlan& plan, const FrameInputs& in,
                                const GBuffer& gbuffer) {
   const Guide guide = reproject(plan, in, gbuffer);
-  const SampleHistories histories = declare_sample_histories(plan);
-  const PreviousSamples previous{histories.visibility_length.previous,
-                                 histories.specular_length.previous, histories.specular.previous,
-                                 histories.visibility.previous};
+  const SampleHistories histories = declare_sample_histories(plan, in.settings);
+  PreviousSamples previous{histories.visibility_length.previous,
+                           histories.specular_length.previous,
+                           histories.specular.previous,
+                           histories.visibility.previous,
+                           {}};
+  if (histories.indirect_length) previous.indirect_length = histories.indirect_length->previous;
   return {guide, histories, plan_samples(plan, in, gbuffer, guide, previous)};
 }
 
@@ -78,7 +70,8 @@ DenoisedSignals denoise(gpu::FramePlan& plan, const FrameInputs& in, const GBuff
         denoise_specular(plan, in, gbuffer, from.guide, from.histories, *noisy.specular);
   }
   if (denoises_indirect(in.settings)) {
-    denoised.indirect = denoise_indirect(plan, in, gbuffer, from.guide, *noisy.indirect);
+    denoised.indirect =
+        denoise_indirect(plan, in, gbuffer, from.guide, from.histories, *noisy.indirect);
   }
   return denoised;
 }

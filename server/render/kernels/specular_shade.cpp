@@ -94,17 +94,22 @@ class HitShading {
   /// What of a hit's light needs no ray.
   HWY_INLINE Float3 steady_light(const Surface& s, const Material& m, Float t, Integer order,
                                  Mask met) {
+    const Mask lit = hn::AndNot(s.has(shared::material_unlit), met);
     Float3 light = numbers(0.0f);
-    Mask open = hn::AndNot(s.has(shared::material_unlit), met);
-    if (cache_ && !none(open)) {
-      const CachedLanes cached =
-          cached_light(*cache_, s.position, s.geometric, t, order, open, touches_);
-      open = hn::AndNot(cached.known, open);
-      light = reflected_light(m, cached.indirect, environment_, frame_.flags);
-    }
-    if (!none(open)) light = select(open, open_light(m), light);
+    if (!none(lit)) light = cache_ ? gathered_light(s, m, t, order, lit) : open_light(m);
     light = select(s.has(shared::material_unlit), s.base_color, light);
     return enabled(shared::frame_emissive) ? light + s.emissive : light;
+  }
+
+  HWY_INLINE Float3 gathered_light(const Surface& s, const Material& m, Float t, Integer order,
+                                   Mask lit) {
+    const bool diffuse = enabled(shared::frame_environment_diffuse);
+    const Float3 open = diffuse ? environment_.irradiance(m.normal) : numbers(0.0f);
+    const CachedLanes cached =
+        cached_light(*cache_, s.position, s.geometric, t, order, lit, touches_);
+    const Float3 irradiance =
+        select(cached.known, cached.indirect, open * number(shared::unknown_openness));
+    return reflected_light(m, irradiance, open, environment_, frame_.flags);
   }
 
   /// The environment's light as if nothing hid it.

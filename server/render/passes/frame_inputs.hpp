@@ -30,6 +30,16 @@ struct FrameClock {
   bool is_young() const { return age < 24; }
 };
 
+inline bool denoises_visibility(const protocol::Settings& s) {
+  return s.shadow_temporal.enabled || s.shadow_blur.enabled;
+}
+inline bool denoises_specular(const protocol::Settings& s) {
+  return s.specular.enabled && (s.specular_temporal.enabled || s.specular_blur.enabled);
+}
+inline bool denoises_indirect(const protocol::Settings& s) {
+  return s.indirect.enabled && (s.indirect_temporal.enabled || s.indirect_blur.enabled);
+}
+
 inline glm::uvec2 size_of(VkExtent2D extent) {
   return {extent.width, extent.height};
 }

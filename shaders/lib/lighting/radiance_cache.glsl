@@ -95,13 +95,15 @@ CachedLight cached_light(vec3 position, vec3 normal, float t, RadianceCacheConst
 }
 
 /// What a surface sends to the eye of indirect light: `irradiance` / pi. Its specular lobes show the
-/// environment as far as that is open, and otherwise what comes from everywhere.
-vec3 reflected_light(SurfaceMaterial m, vec3 irradiance) {
-  vec3 open = enabled(frame_environment_diffuse) ? environment_irradiance(m.normal) : vec3(0.0);
-  float visible = clamp(luminance(irradiance) / max(luminance(open), 1e-6), 0.0, 1.0);
+/// environment as far as the irradiance allows, and of the rest what comes from everywhere. `open`:
+/// the irradiance / pi of the environment alone, if nothing hid it.
+vec3 reflected_light(SurfaceMaterial m, vec3 irradiance, vec3 open) {
+  float sky = luminance(open);
+  float visible = sky > 0.0 ? min(luminance(irradiance) / sky, 1.0) : 0.0;
   vec3 specular = m.specular_albedo * irradiance;
   if (enabled(frame_environment_specular)) {
-    specular = mix(specular, environment_specular(m), visible);
+    specular = m.specular_albedo * max(irradiance - visible * open, vec3(0.0)) +
+               visible * environment_specular(m);
   }
   return wide_albedo(m) * irradiance + specular;
 }

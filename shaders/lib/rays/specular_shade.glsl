@@ -37,20 +37,17 @@ layout(push_constant) uniform Constants {
 #include "lib/lighting/radiance_cache.glsl"
 #endif
 
-/// The environment's light as if nothing hid it.
-vec3 open_light(SurfaceMaterial m) {
-  vec3 light = enabled(frame_environment_diffuse) ? environment_diffuse(m) : vec3(0.0);
-  if (enabled(frame_environment_specular)) light += environment_specular(m);
-  return light;
-}
-
-/// Light that comes from no light source.
+/// Light that comes from no light source: without a cache the environment's, as if nothing hid it.
 vec3 surrounding_light(HitSurface s, SurfaceMaterial m, float t) {
 #ifdef READS_RADIANCE_CACHE
   CachedLight cached = cached_light(s.position, s.geometric, t, cache);
-  if (cached.known) return reflected_light(m, cached.indirect);
+  vec3 open = enabled(frame_environment_diffuse) ? environment_irradiance(m.normal) : vec3(0.0);
+  return reflected_light(m, cached.known ? cached.indirect : open * unknown_openness, open);
+#else
+  vec3 light = enabled(frame_environment_diffuse) ? environment_diffuse(m) : vec3(0.0);
+  if (enabled(frame_environment_specular)) light += environment_specular(m);
+  return light;
 #endif
-  return open_light(m);
 }
 
 /// What of a hit's light needs no ray.

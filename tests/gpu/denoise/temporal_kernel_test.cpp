@@ -39,7 +39,7 @@ class KernelComparison {
     for (const bool host : {false, true}) {
       const auto in = with_host_kernels(rig_, host);
       auto& plan = rig_.plan();
-      const auto histories = render::declare_sample_histories(plan);
+      const auto histories = render::declare_sample_histories(plan, {});
       visibility_.push_back(
           render::accumulate_visibility(plan, in, guide, histories, raw_visibility_));
       specular_.push_back(render::accumulate_radiance(

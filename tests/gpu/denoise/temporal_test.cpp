@@ -178,7 +178,7 @@ class TemporalAccumulation : public testing::Test {
     raw_ = rig_->input("raw", VK_FORMAT_R32G32B32A32_SFLOAT, std::vector(pixels, glm::vec4(0.0f)));
     auto& plan = rig_->plan();
     plan.use_host_kernels(host);
-    const auto histories = render::declare_sample_histories(plan);
+    const auto histories = render::declare_sample_histories(plan, {});
     accumulated_ =
         specular
             ? render::accumulate_radiance(plan, rig_->inputs(), gbuffer, guide,

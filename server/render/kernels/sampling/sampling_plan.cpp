@@ -25,7 +25,9 @@ class Planning {
   HWY_INLINE explicit Planning(const SamplingPlanJob& job)
       : job_(job),
         bounds_(job.width, job.height),
+        half_bounds_((job.width + 1) / 2, (job.height + 1) / 2),
         turn_(static_cast<int>(job.frame.sample_index * shared::plan_step >> 29u)),
+        fine_turn_(static_cast<int>(job.frame.sample_index * shared::plan_step >> 28u)),
         fades_({}, job.frame.sample_index, 7, job.frame.seed) {}
 
   HWY_INLINE void rows(int first, int last) const {
@@ -53,6 +55,21 @@ class Planning {
     return hn::Lt(hn::Mul(turn, frames), whole(shared::plan_turns));
   }
 
+  /// fine_turn() of the shader, advanced to this frame.
+  HWY_INLINE MI has_fine_turn(int x, int y, std::uint32_t frames) const {
+    const VI column = hn::Iota(di_, x);
+    const VI last = hn::And(hn::Xor(hn::ShiftRight<1>(column), whole(y >> 2)), whole(1));
+    const VI place = hn::ShiftLeft<1>(turn(x, y, -turn_)) + last;
+    const auto turns = static_cast<int>(2 * shared::plan_turns);
+    const VI now = hn::And(place + whole(fine_turn_), whole(turns - 1));
+    return hn::Lt(hn::Mul(now, whole(static_cast<int>(frames))), whole(turns));
+  }
+
+  HWY_INLINE MI has_ambient_turn(int x, int y, VI turn, std::uint32_t frames) const {
+    if (job_.constants.indirect_side != 0) return has_fine_turn(x, y, frames);
+    return has_turn(turn, whole(static_cast<int>(frames)));
+  }
+
   HWY_INLINE MI is_sampled(V frames, VI most, VI turn) const {
     const M full = hn::Lt(frames, set(job_.constants.full_frames));
     return hn::Or(hn::RebindMask(di_, full), has_turn(turn, most));
@@ -62,6 +79,16 @@ class Planning {
   HWY_INLINE V counted(V frames, V variance) const {
     const M quiet = hn::Lt(variance * frames, set(shared::plan_quiet_variance));
     return hn::IfThenElse(quiet, frames * set(shared::plan_quiet_factor), frames);
+  }
+
+  HWY_INLINE V indirect_frames(V x, V y) const {
+    const bool half = job_.constants.indirect_side == 2;
+    const VI column = hn::ConvertTo(di_, x), row = hn::ConvertTo(di_, y);
+    const TexelGather<D> texels =
+        half ? half_bounds_.gather(hn::ShiftRight<1>(column), hn::ShiftRight<1>(row))
+             : bounds_.gather(column, row);
+    return texels.template half_of_four_halves<0>(job_.indirect_length).x *
+           set(shared::indirect_frames_factor);
   }
 
   /// is_faded() of the shader.
@@ -92,8 +119,11 @@ class Planning {
 
     const TexelGather<D> texels =
         bounds_.gather(hn::ConvertTo(di_, before_x), hn::ConvertTo(di_, before_y));
-    const Pair<V> frames = texels.template half_of_four_halves<0>(job_.visibility_length);
+    Pair<V> frames = texels.template half_of_four_halves<0>(job_.visibility_length);
     const Pair<V> noise = texels.template half_of_four_fractions<1>(job_.visibility);
+    frames.x = counted(frames.x, noise.x);
+    frames.y =
+        c.indirect_side == 0 ? counted(frames.y, noise.y) : indirect_frames(before_x, before_y);
     const V reflected = texels.template half_of_four_halves<0>(job_.specular_length).x;
     const V away = hn::Abs(texels.template half_of_four_halves<1>(job_.specular_distance).y);
     const auto packed =
@@ -103,17 +133,19 @@ class Planning {
                              hn::Gt(metallic, set(shared::plan_metallic)));
     const auto most = [&](shared::uint count) HWY_ATTR { return whole(static_cast<int>(count)); };
     const VI now = turn(x, y, 0);
-    const MI lit = is_sampled(counted(frames.x, noise.x), most(c.shadows_most), now);
-    const MI ambient_turn = has_turn(now, most(c.ambient_least));
+    const MI lit = is_sampled(frames.x, most(c.shadows_most), now);
+    const MI ambient_turn = has_ambient_turn(x, y, now, c.ambient_least);
+    const MI short_history = hn::RebindMask(di_, hn::Lt(frames.y, set(c.full_frames)));
     const MI open =
-        hn::And(ambient_turn, is_sampled(counted(frames.y, noise.y), most(c.ambient_most), now));
+        hn::And(ambient_turn, hn::Or(short_history, has_ambient_turn(x, y, now, c.ambient_most)));
     const MI mirrored = is_sampled(
         hn::IfThenElse(mirrors, reflected, reflected * set(shared::plan_quiet_factor)),
         hn::IfThenElse(hn::RebindMask(di_, mirrors), most(c.mirrors_most), most(c.specular_most)),
         turn(x, y, shared::plan_turns / 2));
     VI word = hn::ShiftRight<16>(hn::BitCast(di_, away));
     const V ambient = texels.template half_of_four_fractions<0>(job_.visibility).y;
-    const V steps = ambient * set(shared::plan_visibility_steps);
+    const bool traced = shared::traces_ambient(job_.frame.flags);
+    const V steps = (traced ? ambient : set(1.0f)) * set(shared::plan_visibility_steps);
     word = hn::Or(word, hn::ShiftLeft<static_cast<int>(shared::plan_visibility_shift)>(
                             hn::ConvertTo(di_, steps + half)));
     word = hn::Or(word, hn::IfThenElseZero(lit, whole(shared::plan_shadows)));
@@ -132,7 +164,9 @@ class Planning {
   const DI di_{};
   const SamplingPlanJob& job_;
   Bounds<D> bounds_;
+  Bounds<D> half_bounds_;
   int turn_;
+  int fine_turn_;
   RandomNumbers<DU> fades_;
 };
 

@@ -14,6 +14,7 @@ struct SamplingPlanBindings {
   gpu::Read<Stage> specular_length;    // rgba16f
   gpu::Read<Stage> specular_distance;  // rgba16f, w: distance to what is reflected
   gpu::Read<Stage> visibility;         // rgba16: shadow, ambient, variances
+  gpu::Read<Stage> indirect_length;    // rgba16f, perhaps of half the size; or anything
   gpu::Write<Stage> planned;           // r32ui
 };
 using SamplingPlanJob = FrameJob<SamplingPlanBindings, shared::SamplingPlanConstants>;

@@ -67,19 +67,21 @@ HWY_INLINE CachedLanes cached_light(const CacheReader& cache, const Float3& posi
   return {direct.load(), indirect.load(), hn::Gt(hn::Load(tag, known.data()), zero())};
 }
 
-/// What surfaces send to the eye of indirect light.
+/// What surfaces send to the eye of indirect light. `open`: the environment's irradiance / pi.
 template <class Material>
-HWY_INLINE Float3 reflected_light(const Material& m, const Float3& irradiance,
+HWY_INLINE Float3 reflected_light(const Material& m, const Float3& irradiance, const Float3& open,
                                   const EnvironmentLanes& environment, std::uint32_t flags) {
-  const bool diffuse = (flags & shared::frame_environment_diffuse) != 0;
-  const Float open = diffuse ? luminance(environment.irradiance(m.normal)) : zero();
-  const Float visible = clamped(luminance(irradiance) / at_least(open, 1e-6f), 0.0f, 1.0f);
+  const Float sky = luminance(open);
+  const Float share = luminance(irradiance) / at_least(sky, 1e-30f);
+  const Float visible = hn::IfThenElseZero(hn::Gt(sky, zero()), hn::Min(share, one()));
   Float3 specular = m.specular_albedo * irradiance;
   if (flags & shared::frame_environment_specular) {
     const auto reflection = [&](const Float3& normal, Float roughness) HWY_ATTR {
       return environment.reflection(reflect(-m.eye, normal), roughness);
     };
-    specular = mix(specular, environment_specular(m, reflection), visible);
+    const Float3 rest = irradiance - open * visible;
+    const Float3 elsewhere{at_least(rest.x, 0.0f), at_least(rest.y, 0.0f), at_least(rest.z, 0.0f)};
+    specular = m.specular_albedo * elsewhere + environment_specular(m, reflection) * visible;
   }
   return wide_albedo(m) * irradiance + specular;
 }

@@ -29,11 +29,11 @@ AtrousConfig indirect_atrous_config(const FrameInputs& in) {
 
 /// At the size of `noisy` and of what guides it.
 gpu::ImageRef denoise(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                      const Guide& guide, gpu::ImageRef noisy) {
+                      const Guide& guide, const SampleHistories& histories, gpu::ImageRef noisy) {
   const auto& blurring = in.settings.indirect_blur;
   const bool feedback =
       blurring.enabled && blurring.feedback >= 0 && blurring.feedback < blurring.iterations;
-  const RadianceChannel channel = indirect_channel(plan, in);
+  const RadianceChannel channel = indirect_channel(plan, in, histories);
   const AccumulatedSignal accumulated =
       accumulate_radiance(plan, in, gbuffer, guide, channel, noisy);
   if (!blurring.enabled) return accumulated.signal;
@@ -108,8 +108,10 @@ gpu::ImageRef upsample(gpu::FramePlan& plan, const FrameInputs& in, const GBuffe
 }  // namespace
 
 gpu::ImageRef denoise_indirect(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                               const Guide& guide, gpu::ImageRef noisy) {
-  if (!in.settings.indirect.half_resolution) return denoise(plan, in, gbuffer, guide, noisy);
+                               const Guide& guide, const SampleHistories& histories,
+                               gpu::ImageRef noisy) {
+  if (!in.settings.indirect.half_resolution)
+    return denoise(plan, in, gbuffer, guide, histories, noisy);
   const Halved half = halve(plan, in, gbuffer, noisy);
   Guide half_guide;
   gpu::ImageRef denoised;
@@ -117,7 +119,7 @@ gpu::ImageRef denoise_indirect(gpu::FramePlan& plan, const FrameInputs& in, cons
     const FrameInputs half_in = in.at_half_size();
     half_guide =
         reproject(plan, half_in, half.gbuffer, "indirect.reproject", indirect_reproject_buffers);
-    denoised = denoise(plan, half_in, half.gbuffer, half_guide, half.radiance);
+    denoised = denoise(plan, half_in, half.gbuffer, half_guide, histories, half.radiance);
   });
   return upsample(plan, in, gbuffer, guide, half_guide, denoised);
 }

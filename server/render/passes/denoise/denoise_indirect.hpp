@@ -31,6 +31,7 @@ inline constexpr struct IndirectHalfBuffers {
 /// @param noisy  rgba32f: radiance without albedo; w < 0 where no sample was taken
 /// @return rgba32f
 gpu::ImageRef denoise_indirect(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                               const Guide& guide, gpu::ImageRef noisy);
+                               const Guide& guide, const SampleHistories& histories,
+                               gpu::ImageRef noisy);
 
 }  // namespace heliograph::render

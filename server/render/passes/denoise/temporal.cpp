@@ -51,11 +51,18 @@ bool rectifies_after(protocol::Rectification mode) {
 
 }  // namespace
 
-SampleHistories declare_sample_histories(gpu::FramePlan& plan) {
+SampleHistories declare_sample_histories(gpu::FramePlan& plan, const protocol::Settings& settings) {
+  std::optional<gpu::History> indirect_length;
+  if (denoises_indirect(settings)) {
+    const auto size = gpu::FrameSize::squares(settings.indirect.half_resolution ? 2 : 1);
+    indirect_length =
+        plan.history(indirect_temporal_buffers.history_length.name, four_halves, 0, size);
+  }
   return {plan.history(visibility_temporal_buffers.history.name, four_fractions),
           plan.history(visibility_temporal_buffers.history_length.name, four_halves),
           plan.history(specular_temporal_buffers.history.name, four_halves),
-          plan.history(specular_temporal_buffers.history_length.name, four_halves)};
+          plan.history(specular_temporal_buffers.history_length.name, four_halves),
+          indirect_length};
 }
 
 AccumulatedSignal accumulate_visibility(gpu::FramePlan& plan, const FrameInputs& in,
@@ -188,7 +195,8 @@ RadianceChannel specular_channel(const FrameInputs& in, const SampleHistories& h
           .rectifies = [&clock = in.clock] { return clock.samples <= 1; }};
 }
 
-RadianceChannel indirect_channel(gpu::FramePlan& plan, const FrameInputs& in) {
+RadianceChannel indirect_channel(gpu::FramePlan& plan, const FrameInputs& in,
+                                 const SampleHistories& histories) {
   const auto& buffers = indirect_temporal_buffers;
   // The first frames know few bounces: the later half of all is enough.
   static constexpr std::uint32_t least_frames = 4;
@@ -197,7 +205,7 @@ RadianceChannel indirect_channel(gpu::FramePlan& plan, const FrameInputs& in) {
       .buffers = buffers,
       .settings = in.settings.indirect_temporal,
       .history = plan.history(buffers.history.name, four_halves),
-      .history_length = plan.history(buffers.history_length.name, four_halves),
+      .history_length = *histories.indirect_length,
       .flags = [] { return 0u; },
       .most_frames =
           [&clock = in.clock] { return static_cast<float>(std::max(clock.age / 2, least_frames)); },

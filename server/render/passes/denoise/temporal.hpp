@@ -2,6 +2,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <string>
 
 #include "protocol/settings/settings.hpp"
@@ -116,8 +117,9 @@ struct SampleHistories {
   gpu::History visibility_length;
   gpu::History specular;
   gpu::History specular_length;
+  std::optional<gpu::History> indirect_length;  // of indirect.half_resolution, or the frame's size
 };
-SampleHistories declare_sample_histories(gpu::FramePlan& plan);
+SampleHistories declare_sample_histories(gpu::FramePlan& plan, const protocol::Settings& settings);
 
 /// A signal accumulated over frames, in this frame.
 struct AccumulatedSignal {
@@ -147,7 +149,8 @@ struct RadianceChannel {
   std::function<bool()> rectifies;       // whether what is shown may have changed
 };
 RadianceChannel specular_channel(const FrameInputs& in, const SampleHistories& histories);
-RadianceChannel indirect_channel(gpu::FramePlan& plan, const FrameInputs& in);
+RadianceChannel indirect_channel(gpu::FramePlan& plan, const FrameInputs& in,
+                                 const SampleHistories& histories);
 
 /// Demodulated radiance: rgb, and the variance of its luminance in w. Mean and deviation of
 /// samples lie beside the length of the history, z and w of `history_length`.

@@ -10,10 +10,8 @@ namespace {
 
 /// Whether the frame differs from this frame's sample.
 bool is_filtered(const protocol::Settings& settings) {
-  return settings.shadow_temporal.enabled || settings.shadow_blur.enabled ||
-         (settings.specular.enabled &&
-          (settings.specular_temporal.enabled || settings.specular_blur.enabled)) ||
-         settings.antialiasing.temporal ||
+  return denoises_visibility(settings) || denoises_specular(settings) ||
+         denoises_indirect(settings) || settings.antialiasing.temporal ||
          settings.reference.use == protocol::ReferenceUse::when_static;
 }
 

@@ -21,6 +21,10 @@ bool plans_visibility(const Settings& s) {
   return s.sampling.visibility && keeps_without_sample(s.shadow_temporal);
 }
 
+bool plans_indirect(const Settings& s) {
+  return s.sampling.visibility && s.indirect.enabled && keeps_without_sample(s.indirect_temporal);
+}
+
 bool plans_specular(const Settings& s) {
   return s.sampling.specular && s.specular.enabled && !s.specular.half_resolution &&
          keeps_without_sample(s.specular_temporal);
@@ -34,17 +38,18 @@ shared::SamplingPlanConstants plan_constants(const FrameInputs& in) {
   const auto at_most = [](std::uint32_t frames, bool planned) { return planned ? frames : 1u; };
   const bool fades = plans_specular(s) && in.scene_motion.settled();
   const bool looks_up = s.specular.fade_to == protocol::FadedReflection::environment;
-  const bool gathers_by_squares =
-      s.indirect.enabled && s.indirect.half_resolution && keeps_without_sample(s.indirect_temporal);
-  const bool plans_ambient = s.indirect.enabled
-                                 ? plans_visibility(s) && keeps_without_sample(s.indirect_temporal)
-                                 : plans_visibility(s);
+  const bool gathers = denoises_indirect(s);
+  const bool gathers_by_squares = gathers && s.indirect.half_resolution;
   // Roughness is stored in steps of 1 / 255.
   const float fade_range = std::max(s.specular.fade_end - s.specular.fade_start, 1.0f / 255.0f);
   return {static_cast<float>(s.sampling.full_frames),
           at_most(most, plans_visibility(s)),
-          at_most(most, plans_ambient),
-          gathers_by_squares && !in.clock.is_young() ? 4u : 1u,
+          s.indirect.enabled ? at_most(gathers_by_squares ? 2 * most : most, plans_indirect(s))
+                             : at_most(most, plans_visibility(s)),
+          gathers_by_squares && plans_indirect(s) && !in.clock.is_young() ? 4u : 1u,
+          !gathers                     ? 0u
+          : s.indirect.half_resolution ? 2u
+                                       : 1u,
           at_most(most, plans_specular(s)),
           at_most(mirrors, plans_specular(s)),
           s.specular.fade_start,
@@ -75,13 +80,15 @@ gpu::ImageRef plan_samples(gpu::FramePlan& plan, const FrameInputs& in, const GB
                            const Guide& guide, const PreviousSamples& previous) {
   const auto planned = plan.image(sampling_plan_buffers.plan.name, VK_FORMAT_R32_UINT);
   plan.pass("sampling.plan", in.program(shaders::sampling_plan))
-      .bind<kernels::SamplingPlanBindings>({.reprojection = guide.reprojection,
-                                            .surface = gbuffer.surface,
-                                            .visibility_length = previous.visibility_length,
-                                            .specular_length = previous.specular_length,
-                                            .specular_distance = previous.specular_distance,
-                                            .visibility = previous.visibility,
-                                            .planned = planned})
+      .bind<kernels::SamplingPlanBindings>(
+          {.reprojection = guide.reprojection,
+           .surface = gbuffer.surface,
+           .visibility_length = previous.visibility_length,
+           .specular_length = previous.specular_length,
+           .specular_distance = previous.specular_distance,
+           .visibility = previous.visibility,
+           .indirect_length = previous.indirect_length.value_or(previous.visibility_length),
+           .planned = planned})
       .constants([in] { return plan_constants(in); })
       .dispatch(gpu::each_pixel())
       .host(kernels::sampling_plan, in.constants)

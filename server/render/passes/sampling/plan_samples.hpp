@@ -34,8 +34,9 @@ inline constexpr struct SamplingPlanBuffers {
 struct PreviousSamples {
   gpu::ImageRef visibility_length;
   gpu::ImageRef specular_length;
-  gpu::ImageRef specular_distance;  // in w
-  gpu::ImageRef visibility;         // shadow and ambient; variances in zw
+  gpu::ImageRef specular_distance;               // in w
+  gpu::ImageRef visibility;                      // shadow and ambient; variances in zw
+  std::optional<gpu::ImageRef> indirect_length;  // of indirect.half_resolution, or the frame's size
 };
 
 /// Whether this frame of a moving view leaves samples out. It is no part of the accumulated mean,
