@@ -28,6 +28,7 @@ class Composition {
     Triple<V> ambient;
     Triple<V> specular;
     Triple<V> indirect;
+    V sky;  // luminance of the latter if nothing hid the environment, where `ambient` shows it
   };
   /// The signals that they are multiplied by.
   struct Signals {
@@ -69,7 +70,7 @@ class Composition {
   HWY_INLINE void block(const ViewedRow<D>& view, int x, int y) const {
     const V view_z = load(job_.motion, x, y).w;
     const M seen = hn::Gt(view_z, hn::Zero(d_));
-    Terms terms{black(), black(), black(), black(), black()};
+    Terms terms{black(), black(), black(), black(), black(), hn::Zero(d_)};
     if (!hn::AllFalse(d_, seen)) add_surface(view, x, y, view_z, seen, terms);
     if (!hn::AllTrue(d_, seen)) {
       terms.own = select(seen, terms.own, color(job_.background, x, y));
@@ -151,6 +152,9 @@ class Composition {
           environment_specular(m, [&](const Triple<V>& normal, V roughness)
                                       HWY_ATTR { return reflection(normal, m.eye, roughness); });
       terms.ambient = select(looked_up, terms.ambient + light * occlusion, terms.ambient);
+      if (enabled(shared::frame_indirect)) {
+        terms.sky = hn::IfThenElseZero(looked_up, luminance(irradiance(m.normal)));
+      }
     }
   }
 
@@ -192,7 +196,11 @@ class Composition {
                         int y) const {
     const V one = set(1.0f);
     const V lit = enabled(shared::frame_shadows) ? signals.shadow : one;
-    const V open = shared::traces_ambient(job_.frame.flags) ? signals.ambient : one;
+    V open = shared::traces_ambient(job_.frame.flags) ? signals.ambient : one;
+    if (enabled(shared::frame_indirect)) {
+      const V share = luminance(signals.indirect) / hn::Max(terms.sky, set(1e-30f));
+      open = hn::IfThenElse(hn::Gt(terms.sky, hn::Zero(d_)), hn::Min(share, one), open);
+    }
     Triple<V> radiance = terms.own + terms.direct * lit + terms.ambient * open +
                          terms.specular * signals.specular + terms.indirect * signals.indirect;
     // One bad pixel must not spread through the history.

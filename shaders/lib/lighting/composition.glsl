@@ -29,11 +29,12 @@ struct Composition {
   vec3 ambient;  // of the ambient visibility
   vec3 specular;   // of the specular signal
   vec3 indirect;   // of the indirect diffuse light
+  float sky;       // luminance of that if nothing hid the environment, where `ambient` shows it
 };
 
 /// Of what no signal lights.
 Composition without_light(vec3 own) {
-  return Composition(own, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+  return Composition(own, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
 }
 
 Composition lit_composition(ivec2 pixel, float view_z) {
@@ -49,6 +50,7 @@ Composition lit_composition(ivec2 pixel, float view_z) {
     terms.specular = specular_demodulator(m);
   } else if (enabled(frame_environment_specular)) {
     terms.ambient += environment_specular(m);
+    if (enabled(frame_indirect)) terms.sky = luminance(environment_irradiance(m.normal));
   }
   terms.ambient *= imageLoad(base_color, pixel).a;  // the occlusion texture
   return terms;
@@ -74,6 +76,7 @@ Composition pixel_composition(ivec2 pixel) {
 vec4 composed(Composition terms, vec2 visibility, vec3 specular, vec3 indirect) {
   float lit = enabled(frame_shadows) ? visibility.x : 1.0;
   float open = traces_ambient(frame.flags) ? visibility.y : 1.0;
+  if (terms.sky > 0.0) open = min(luminance(indirect) / terms.sky, 1.0);
   vec3 radiance = terms.own + terms.direct * lit + terms.ambient * open +
                   terms.specular * specular + terms.indirect * indirect;
   if (any(isnan(radiance)) || any(isinf(radiance))) radiance = vec3(0.0);
