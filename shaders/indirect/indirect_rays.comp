@@ -36,9 +36,10 @@ void main() {
     ray.t_max = 1e30;
     ray.pixel = uint(pixel.x) | uint(pixel.y) << 16u;
     ray.user = ray.padding0 = ray.padding1 = 0u;
-    requested = dot(ray.direction, geometric) > 0.0;
+    // Directions below the surface, which a shading normal allows, are turned up: none is lost.
+    ray.direction -= 2.0 * min(dot(ray.direction, geometric), 0.0) * geometric;
+    requested = true;
   }
-  // Directions below the surface bring nothing.
   if (!outside_frame(pixel)) {
     imageStore(radiance, pixel, vec4(0.0, 0.0, 0.0, left_out ? no_sample : 1.0));
   }

@@ -61,7 +61,7 @@ scenes::Sweep sweep_to(Swept swept, float value) {
   return sweep;
 }
 
-protocol::Settings Technique::settings() const {
+protocol::Settings Technique::settings(Paths paths) const {
   protocol::Settings settings;
   const auto preset = protocol::find_preset(name);
   if (preset) {
@@ -71,6 +71,7 @@ protocol::Settings Technique::settings() const {
     apply(settings, {{"shadow_temporal", {{"rectification", name}}},
                      {"specular_temporal", {{"rectification", name}}}});
   }
+  settings.indirect.enabled = settings.indirect.enabled && paths == Paths::all;
   settings.accumulation.enabled = false;
   settings.motion.scale = 1.0f;
   return settings;

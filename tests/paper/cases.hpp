@@ -27,11 +27,15 @@ Swept swept_in(std::string_view scene);
 std::span<const float> paper_values(Swept swept);
 scenes::Sweep sweep_to(Swept swept, float value);
 
+/// Which light a row shows: that of the paper, which has no indirect diffuse light, or all that the
+/// preset has.
+enum class Paths { of_paper, all };
+
 /// A row of the tables: a preset, or the preset `separable` with another rectification.
 struct Technique {
   std::string name;
   /// Without accumulation, so that the denoised frame is measured even in a static view.
-  protocol::Settings settings() const;
+  protocol::Settings settings(Paths paths = Paths::of_paper) const;
 };
 /// The six presets, then `fast_history`, `percentile` and `gradient`.
 const std::vector<Technique>& techniques();

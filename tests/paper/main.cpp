@@ -79,7 +79,8 @@ struct Options {
     return stage;
   }
   protocol::Settings of(const std::string& preset) const {
-    protocol::Settings all = find_technique(preset).settings();
+    protocol::Settings all =
+        find_technique(preset).settings(ground_truth == "full" ? Paths::all : Paths::of_paper);
     for (const std::string& assignment : settings) assign(all, assignment);
     return all;
   }

@@ -115,6 +115,7 @@ std::vector<render::Frame> Stage::ground_truth(GroundTruth source, const Shot& s
     settings.reference.scope = source == GroundTruth::full ? protocol::ReferenceScope::full
                                                            : protocol::ReferenceScope::same_paths;
   } else {
+    settings.indirect.enabled = false;
     settings.shadow_temporal.enabled = settings.specular_temporal.enabled = false;
     settings.shadow_blur.enabled = settings.specular_blur.enabled = false;
   }

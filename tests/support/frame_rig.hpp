@@ -10,10 +10,17 @@
 
 namespace heliograph::test {
 
+/// With ambient occlusion in place of indirect light.
+inline protocol::Settings without_indirect() {
+  protocol::Settings settings;
+  settings.indirect.enabled = false;
+  return settings;
+}
+
 struct RigOptions {
   VkExtent2D extent{64, 64};
   scene::Environment environment = scene::constant_environment(glm::vec3(1.0f));
-  protocol::Settings settings;
+  protocol::Settings settings = without_indirect();
   std::string tracer = "auto";
   std::optional<VkExtent2D> shown = std::nullopt;  // where frames are drawn smaller
 };

@@ -319,14 +319,16 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
   state.constants = make_frame_constants(
       state.camera, state.settings, *state.moving, {.drawn = state.drawn(), .shown = state.extent},
       state.sample_index++, state.has_previous ? &before : nullptr);
-  const std::uint32_t still = state.scene_motion.still_frames;
+  const SceneMotion motion_before = state.scene_motion;
   state.scene_motion =
       render::scene_motion(*state.moving, state.constants, state.has_previous ? &before : nullptr);
-  if (state.scene_motion.any()) {
-    state.scene_motion.still_frames = 0;
-  } else if (state.has_previous && still < ~0u) {
-    state.scene_motion.still_frames = still + 1;
-  }
+  const auto count = [&](bool changes, std::uint32_t still) {
+    if (changes) return 0u;
+    return state.has_previous && still < ~0u ? still + 1 : ~0u;
+  };
+  state.scene_motion.still_frames = count(state.scene_motion.any(), motion_before.still_frames);
+  state.scene_motion.still_light_frames =
+      count(state.scene_motion.light_changes(), motion_before.still_light_frames);
   state.has_previous = true;
   state.half_constants = at_half_size(state.constants);
   state.constants_buffers.upload(state.constants, state.half_constants);

@@ -27,7 +27,8 @@ struct FrameClock {
   float carried_share = 1.0f;
 
   /// Whether so few frames have passed that all light is still uncertain.
-  bool is_young() const { return age < 24; }
+  static constexpr std::uint32_t young_frames = 24;
+  bool is_young() const { return age < young_frames; }
 };
 
 inline bool denoises_visibility(const protocol::Settings& s) {

@@ -17,10 +17,11 @@ struct SceneMotion {
   bool brightness_changed = false;  // of any light or of the environment
   /// Frames since any of these last was not as in the frame before; 0: they are not now.
   std::uint32_t still_frames = ~0u;
+  /// The same of lights and the environment alone: what changes all indirect light.
+  std::uint32_t still_light_frames = ~0u;
 
-  bool any() const {
-    return lights > 0.0f || environment > 0.0f || geometry_moved || brightness_changed;
-  }
+  bool light_changes() const { return lights > 0.0f || environment > 0.0f || brightness_changed; }
+  bool any() const { return light_changes() || geometry_moved; }
   /// Whether histories hold no more traces of what moved or changed.
   bool settled() const { return still_frames >= settling_frames; }
 

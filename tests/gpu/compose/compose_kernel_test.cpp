@@ -12,7 +12,7 @@ struct View {
   bool denoised = true;
   bool reflections = true;
   bool orthographic = false;
-  protocol::Settings settings;
+  protocol::Settings settings = without_indirect();
 };
 
 std::shared_ptr<const scene::Scene> lit_scene() {

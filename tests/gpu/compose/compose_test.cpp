@@ -28,7 +28,7 @@ struct Inputs {
   std::optional<glm::vec3> specular;
   std::optional<Denoised> denoised;
   glm::vec3 background{0.0f};
-  protocol::Settings settings;
+  protocol::Settings settings = without_indirect();
 };
 
 struct ComposedImages {
@@ -66,7 +66,7 @@ glm::vec3 compose(SceneBuilder& scene, const Inputs& in) {
 }
 
 protocol::Settings only_direct() {
-  protocol::Settings settings;
+  protocol::Settings settings = without_indirect();
   settings.lighting.environment_diffuse = settings.lighting.environment_specular = false;
   return settings;
 }
@@ -109,7 +109,7 @@ TEST(Compose, ShadowScalesDirectLightOnly) {
   EXPECT_NEAR(compose(scene, in).x, 0.25f * lit, 1e-5f);
   in.settings.shadows.enabled = false;
   EXPECT_NEAR(compose(scene, in).x, lit, 1e-5f);
-  in.settings = {};
+  in.settings = without_indirect();
   in.settings.lighting.direct = false;
   EXPECT_NEAR(compose(scene, in).x, 1.0f, 0.02f) << "a white plane in a white furnace";
 }

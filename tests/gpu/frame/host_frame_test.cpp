@@ -85,7 +85,7 @@ TEST_F(HostFrame, SubmitsNothingForLayersBlendsAndAreaLights) {
 }
 
 TEST_F(HostFrame, DenoisesOnlyWhatIsTraced) {
-  protocol::Settings settings;
+  protocol::Settings settings = without_indirect();
   settings.specular.enabled = false;
   EXPECT_TRUE(passes_that_ran(*frame(settings)).contains("visibility.temporal"));
   settings.shadows.enabled = settings.ambient.occlusion = false;

@@ -46,7 +46,7 @@ class PresentTest : public testing::Test {
   }
 
   static protocol::Settings linear() {
-    protocol::Settings settings;
+    protocol::Settings settings = without_indirect();
     settings.tone_map.curve = protocol::ToneMapCurve::linear;
     return settings;
   }
@@ -109,7 +109,7 @@ TEST_F(PresentTest, ToneMapCurvesDiffer) {
   std::vector<double> greens;
   for (const auto curve : {protocol::ToneMapCurve::neutral, protocol::ToneMapCurve::aces,
                            protocol::ToneMapCurve::agx, protocol::ToneMapCurve::linear}) {
-    protocol::Settings settings;
+    protocol::Settings settings = without_indirect();
     settings.tone_map.curve = curve;
     const double green = mean(present({0.2f, 0.6f, 0.4f}, settings)).y;
     for (const double other : greens) EXPECT_GT(std::abs(green - other), 0.5 / 255.0);

@@ -31,7 +31,8 @@ std::uint32_t packed_surface(const History& history) {
 /// The plan of frames whose histories are given, by the host kernel or the shader.
 class PlannedFrames {
  public:
-  explicit PlannedFrames(bool host = has_host_kernels(), const protocol::Settings& settings = {})
+  explicit PlannedFrames(bool host = has_host_kernels(),
+                         const protocol::Settings& settings = without_indirect())
       : rig_(SceneBuilder().build(), camera_, {.extent = extent, .settings = settings}) {
     render::GBuffer gbuffer{};
     gbuffer.surface = surface_;
@@ -116,7 +117,7 @@ class PlannedFrames {
 };
 
 void expect_rates(const History& history, const glm::dvec3& expected, const char* what,
-                  const protocol::Settings& settings = {}) {
+                  const protocol::Settings& settings = without_indirect()) {
   PlannedFrames frames(has_host_kernels(), settings);
   frames.set(history);
   const glm::dvec3 rates = frames.rates();
@@ -127,7 +128,7 @@ void expect_rates(const History& history, const glm::dvec3& expected, const char
 
 TEST(SamplingPlan, KernelMatchesShader) {
   if (!has_host_kernels()) GTEST_SKIP() << "host kernels run on CPU devices only";
-  protocol::Settings settings;
+  protocol::Settings settings = without_indirect();
   settings.specular.fade_to = protocol::FadedReflection::environment;
   PlannedFrames host(true, settings), shader(false, settings);
   std::mt19937 random(3);
@@ -150,7 +151,7 @@ TEST(SamplingPlan, KernelMatchesShader) {
 }
 
 TEST(SamplingPlan, SamplesLongHistoriesOnceInFloorFrames) {
-  const protocol::Settings settings;
+  const protocol::Settings settings = without_indirect();
   const double floor = 1.0 / settings.sampling.floor;
   ASSERT_EQ(floor, 0.125) << "the default";
   expect_rates({}, {floor, floor, floor}, "long");
@@ -177,7 +178,7 @@ TEST(SamplingPlan, NeedsFewerSamplesWhereTheyHardlyDiffer) {
 }
 
 TEST(SamplingPlan, FadesReflectionsOfRoughSurfaces) {
-  protocol::Settings settings;
+  protocol::Settings settings = without_indirect();
   settings.specular.fade_start = 0.4f;
   settings.specular.fade_end = 0.6f;
   settings.specular.fade_fraction = 0.8f;
@@ -197,7 +198,7 @@ TEST(SamplingPlan, FadesReflectionsOfRoughSurfaces) {
 }
 
 TEST(SamplingPlan, LooksUpTheEnvironmentWhereReflectionsFade) {
-  protocol::Settings settings;
+  protocol::Settings settings = without_indirect();
   settings.specular.fade_to = protocol::FadedReflection::environment;
   settings.specular.fade_fraction = 1.0f;
   PlannedFrames frames(has_host_kernels(), settings);

@@ -21,7 +21,7 @@ glm::vec3 decode(const glm::vec2& p) {
 /// Rasterizes a scene, traces shadows or ambient visibility and averages over samples.
 struct Trace {
   Trace(SceneBuilder& builder, const scene::Camera& view, const std::string& tracer,
-        const protocol::Settings& settings = {}, bool ambient = false)
+        const protocol::Settings& settings = without_indirect(), bool ambient = false)
       : camera(view),
         rig(builder.build(), view, options(tracer, settings)),
         gbuffer(render::rasterize_gbuffer(rig.plan(), rig.inputs())),
@@ -125,7 +125,7 @@ TEST_P(Shadows, AngularDiameterOverrideReplacesSunDiameter) {
   SceneBuilder builder;
   builder.place(add_ground(builder, 50)).place(add_roof(builder, 2.0f));
   builder.add_sun({0, -1, 0}, glm::vec3(1.0f), 20.0f);
-  protocol::Settings settings;
+  protocol::Settings settings = without_indirect();
   settings.shadows.angular_diameter_override = 0.0f;
   Trace trace(builder, look({0, 1.5f, 2}, {0, 0, 0}), GetParam(), settings);
   trace.run(2);
@@ -239,7 +239,7 @@ TEST_P(Shadows, AmbientVisibilityIsCosineWeightedSky) {
   constexpr float height = 0.5f;
   SceneBuilder builder;
   builder.place(add_ground(builder, 50)).place(add_roof(builder, height));
-  protocol::Settings settings;
+  protocol::Settings settings = without_indirect();
   settings.ambient.radius = 100.0f;
   Trace trace(builder, look({0, 0.45f, 0.8f}, {0, 0, 0}), GetParam(), settings, true);
   trace.run(128);

@@ -153,6 +153,8 @@ TEST(History, LightingSwitchesResetHistory) {
   for (const auto& [name, change] : switches) {
     JitterRig rig(ball(), look({0.4f, 0.3f, 3}, {0, 0, 0}), true);
     protocol::Settings settings;
+    settings.indirect.enabled = false;
+    rig.apply(settings);
     for (int i = 0; i < 4; ++i) rig.renderer.render();
     change(settings);
     rig.apply(settings);

@@ -35,6 +35,7 @@ inline scene::Camera spheres_camera() {
 /// Shows the denoised frame without accumulation or antialiasing.
 inline protocol::Settings denoised_only() {
   protocol::Settings settings;
+  settings.indirect.enabled = false;
   settings.antialiasing.jitter = settings.antialiasing.temporal = false;
   settings.accumulation.by_noise = false;
   settings.accumulation.blend_samples = 4096;

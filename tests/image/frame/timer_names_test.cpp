@@ -55,6 +55,7 @@ std::string shader_of(const std::string& timer, const std::set<std::string>& ste
   const std::string& last = parts.back();
   std::vector<std::string> candidates{"rays_" + last, "specular_" + last, "visibility_" + last,
                                       "rays_" + parts[parts.size() - 2] + "_" + last};
+  if (last == "reproject") candidates = {"reproject"};
   if (last == "trace") candidates = {"trace_closest"};
   if (last == "occlusion") candidates = {"trace_any"};
   for (const std::string& candidate : candidates) {

@@ -48,6 +48,7 @@ std::shared_ptr<scene::Scene> lit_scene(SceneBuilder& builder) {
 
 protocol::Settings plain_settings() {
   protocol::Settings settings;
+  settings.indirect.enabled = false;
   settings.shadow_temporal.enabled = settings.shadow_blur.enabled = false;
   settings.specular.enabled = false;
   settings.ambient.occlusion = false;

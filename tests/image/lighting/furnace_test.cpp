@@ -13,7 +13,7 @@ namespace {
 /// Expects radiance 1 within 2 % in every pixel: a white object in a white furnace is invisible.
 void expect_white(RendererRig& rig, const std::string& name) {
   protocol::Settings settings;
-  settings.ambient.occlusion = false;  // spheres occlude each other
+  settings.indirect.enabled = settings.ambient.occlusion = false;  // spheres occlude each other
   settings.lighting.direct = false;
   settings.specular.enabled = false;  // traced reflections are noisy: SpecularRays tests them
   settings.tone_map.curve = protocol::ToneMapCurve::linear;

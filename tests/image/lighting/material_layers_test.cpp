@@ -87,7 +87,7 @@ TEST(LayerFurnace, LayersConserveEnergy) {
   RendererRig rig(white_spheres().build(), scene::constant_environment(glm::vec3(1.0f)),
                   look({0, 0, 6}, {0, 0, 0}, 36.0f), 160, 90);
   protocol::Settings settings;
-  settings.ambient.occlusion = false;
+  settings.indirect.enabled = settings.ambient.occlusion = false;
   settings.lighting.direct = false;
   settings.specular.enabled = false;
   rig.apply(settings);

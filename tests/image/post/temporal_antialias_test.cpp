@@ -28,6 +28,7 @@ std::shared_ptr<const scene::Scene> edges() {
 
 protocol::Settings without_noise() {
   protocol::Settings settings;
+  settings.indirect.enabled = false;
   settings.shadows.enabled = false;
   settings.specular.enabled = false;
   settings.ambient.occlusion = false;

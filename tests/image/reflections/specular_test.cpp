@@ -12,6 +12,7 @@ namespace {
 /// Noisy reflections: denoising, antialiasing and occlusion are off.
 protocol::Settings undenoised_reflections() {
   protocol::Settings settings;
+  settings.indirect.enabled = false;
   settings.shadow_temporal.enabled = settings.shadow_blur.enabled = false;
   settings.specular_temporal.enabled = settings.specular_blur.enabled = false;
   settings.antialiasing.temporal = settings.antialiasing.jitter = false;

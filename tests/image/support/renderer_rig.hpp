@@ -41,11 +41,13 @@ class RendererRig {
   render::Renderer renderer;
 };
 
-/// Settings without denoising and antialiasing over time.
+/// Settings without denoising and antialiasing over time, and without indirect light, which
+/// bounces: along the same paths as the path tracer's `same_paths`.
 inline protocol::Settings undenoised() {
   protocol::Settings settings;
   settings.shadow_temporal.enabled = settings.shadow_blur.enabled = false;
   settings.specular_temporal.enabled = settings.specular_blur.enabled = false;
+  settings.indirect.enabled = false;
   settings.antialiasing.temporal = false;
   settings.accumulation.max_samples = 4096;
   return settings;

@@ -62,9 +62,9 @@ Settings all_changed() {
 }
 
 bool is_of_the_denoiser(const SettingDescriptor& setting) {
-  static const std::set<std::string_view> groups{"reprojection",  "shadow_temporal",
-                                                 "shadow_blur",   "specular_temporal",
-                                                 "specular_blur", "reinhard"};
+  static const std::set<std::string_view> groups{
+      "reprojection", "shadow_temporal", "shadow_blur",       "specular_temporal", "specular_blur",
+      "reinhard",     "indirect",        "indirect_temporal", "indirect_blur"};
   static const std::set<std::string_view> paths{
       "specular.enabled",      "specular.hit_shading",   "specular.max_roughness",
       "specular.fade_start",   "specular.fade_end",      "specular.fade_fraction",
@@ -141,6 +141,7 @@ TEST(Presets, SvgfIsThePapersBaseline) {
                       "iterations_by_roughness": false, "iterations": 4, "luminance_sigma": 4.0,
                       "moving_sigma": 4.0},
     "accumulation": {"by_noise": false},
+    "indirect": {"enabled": false},
     "sampling": {"visibility": false, "specular": false}})"));
 }
 

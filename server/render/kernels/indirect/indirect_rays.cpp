@@ -34,7 +34,7 @@ class IndirectRays {
     for (int i = 0; i < traced.size(); i += static_cast<int>(hn::Lanes(tag))) {
       Mask requested;
       const PixelLanes pixels = traced.from(i, requested);
-      const RayLanes ray = ray_of(pixels, requested);
+      const RayLanes ray = ray_of(pixels);
       made.add(ray, requested);
     }
     made.append_to(job_.rays);
@@ -47,8 +47,8 @@ class IndirectRays {
     return float_mask(hn::Ne(bit, integer(0)));
   }
 
-  /// Directions below the surface are not `requested`.
-  HWY_INLINE RayLanes ray_of(const PixelLanes& pixels, Mask& requested) const {
+  /// Directions below the surface, which a shading normal allows, are turned up: none is lost.
+  HWY_INLINE RayLanes ray_of(const PixelLanes& pixels) const {
     const Float view_z = gathered_last(job_.motion, pixels);
     const Float4 encoded = gathered4(job_.normals, pixels);
     const Float3 geometric = octahedral_decode(encoded.z, encoded.w);
@@ -61,7 +61,8 @@ class IndirectRays {
     ray.t_max = number(1e30f);
     ray.pixel = pack_pixel(pixels);
     ray.user = numbers(0.0f);
-    requested = hn::And(requested, hn::Gt(dot(ray.direction, geometric), zero()));
+    const Float below = hn::Min(dot(ray.direction, geometric), zero());
+    ray.direction = multiply_add(geometric, below * number(-2.0f), ray.direction);
     return ray;
   }
 

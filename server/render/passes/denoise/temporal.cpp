@@ -198,19 +198,23 @@ RadianceChannel specular_channel(const FrameInputs& in, const SampleHistories& h
 RadianceChannel indirect_channel(gpu::FramePlan& plan, const FrameInputs& in,
                                  const SampleHistories& histories) {
   const auto& buffers = indirect_temporal_buffers;
-  // The first frames know few bounces: the later half of all is enough.
-  static constexpr std::uint32_t least_frames = 4;
-  return {
-      .name = "indirect",
-      .buffers = buffers,
-      .settings = in.settings.indirect_temporal,
-      .history = plan.history(buffers.history.name, four_halves),
-      .history_length = *histories.indirect_length,
-      .flags = [] { return 0u; },
-      .most_frames =
-          [&clock = in.clock] { return static_cast<float>(std::max(clock.age / 2, least_frames)); },
-      // It does not depend on the view: it changes only where geometry or lights do.
-      .rectifies = [&motion = in.scene_motion] { return !motion.settled(); }};
+  // The first frames know few bounces, the last before a change other light: the later half of
+  // those since is enough.
+  const auto most_frames = [&clock = in.clock, &motion = in.scene_motion] {
+    constexpr std::uint32_t least_known = 4, least_changed = 8;
+    const std::uint32_t known = std::max(clock.age / 2, least_known);
+    return static_cast<float>(
+        std::min(known, std::max(motion.still_light_frames / 2, least_changed)));
+  };
+  return {.name = "indirect",
+          .buffers = buffers,
+          .settings = in.settings.indirect_temporal,
+          .history = plan.history(buffers.history.name, four_halves),
+          .history_length = *histories.indirect_length,
+          .flags = [] { return 0u; },
+          .most_frames = most_frames,
+          // It does not depend on the view: it changes only where geometry or lights do.
+          .rectifies = [&motion = in.scene_motion] { return !motion.settled(); }};
 }
 
 void feed_visibility_back(gpu::FramePlan& plan, const FrameInputs& in,

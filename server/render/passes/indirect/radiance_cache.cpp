@@ -5,6 +5,7 @@
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/resources/light_table.hpp"
 #include "render/resources/moving_scene.hpp"
+#include "render/resources/scene_motion.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
@@ -23,11 +24,13 @@ shared::RadianceCacheConstants cache_constants(const FrameInputs& in) {
   made.lifetime = 64;
   made.cell_fraction = 0.5f;
   // A static view has time: nothing waits for its samples. A cache that knows little needs them,
-  // and forgets those that were taken before light had gone around.
-  const bool young = in.clock.is_young();
-  const float factor = young || in.clock.samples > 0 ? 4.0f : 1.0f;
+  // and forgets those that were taken before light had gone around. What moves changes light here
+  // and there, at every frame.
+  const SceneMotion& motion = in.scene_motion;
+  const bool young = in.clock.is_young() || motion.still_light_frames < FrameClock::young_frames;
+  const float factor = young || in.clock.samples > 0 ? 4.0f : motion.settled() ? 1.0f : 2.0f;
   made.updates = factor * static_cast<float>(settings.updates);
-  made.least_weight = young ? 0.5f : 0.0f;
+  made.least_weight = young ? 0.5f : motion.settled() ? 0.0f : 0.125f;
   return made;
 }
 
