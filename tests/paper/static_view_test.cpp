@@ -15,10 +15,12 @@ TEST(StaticView, NeverGetsWorseInThePapersScenes) {
     const Stage stage(test::engine(), scene, sweep_to(swept, paper_values(swept)[1]),
                       {.width = 192, .height = 108});
     const Shot shot{.movement = Movement::moving_camera, .frames = 20, .compared = 1};
+    protocol::Settings settings;
+    settings.indirect.enabled = false;
     const render::Frame truth = stage.ground_truth(GroundTruth::accumulated, shot, 384).front();
     double best = 0.0;
     std::string all;
-    for (const render::Frame& frame : stage.rest({}, shot, 48)) {
+    for (const render::Frame& frame : stage.rest(settings, shot, 48)) {
       const double similarity = test::ssim(truth, frame);
       all += std::to_string(similarity) + " ";
       // One frame's pattern of jitter may be a little less lucky than another's.

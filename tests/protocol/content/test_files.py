@@ -92,6 +92,7 @@ class Files(ServerTestCase):
             self.assertIn(values.ndim, (2, 3), buffer)
             self.assertLessEqual(values.shape[0], 90, buffer)
             kind = {"output": "uint8", "gbuffer.instance": "uint32",
+                    "indirect.half.instance": "uint32",
                     "sampling.plan": "uint32"}.get(buffer["name"], "float32")
             self.assertEqual(values.dtype, kind, buffer)
 

@@ -10,8 +10,10 @@ from harness.viewer import FLAG_DISCONTINUITY, Viewer
 class Histories(ServerTestCase):
     @classmethod
     def setUpClass(cls):
-        # One frame for every change, so that each is seen.
-        cls.server = Server("--scene", "mirror", "--set", "accumulation.max_samples=1")
+        # One frame for every change, so that each is seen; ambient occlusion, so that the history of
+        # visibility goes on without shadows.
+        cls.server = Server("--scene", "mirror", "--set", "accumulation.max_samples=1",
+                            "--set", "indirect.enabled=false")
 
     def history_lengths(self):
         """How many lengths of history there are in the image: surfaces that have just been

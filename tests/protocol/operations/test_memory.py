@@ -34,4 +34,4 @@ class Memory(ServerTestCase):
             pixel = (resident(self.server) - before) / (WIDTH * HEIGHT)
         print(f"{pixel:.0f} bytes a pixel", flush=True)
         self.assertGreater(pixel, 100)
-        self.assertLess(pixel, 358)
+        self.assertLess(pixel, 375)
