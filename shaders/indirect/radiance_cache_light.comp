@@ -15,6 +15,7 @@ void main() {
   uint index = ray_index();
   if (index >= ray_count.count || occluded[index] != 0u) return;
   Ray ray = rays[index];
+  if (cells[ray.pixel].state != cell_updated) return;
   cells[ray.pixel].new_direct =
       sanitize(uintBitsToFloat(uvec3(ray.user, ray.padding0, ray.padding1)));
 }

@@ -2,7 +2,7 @@
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
 // Chooses the cells that are updated in this frame: a shadow ray toward one light and a gathering
-// ray for each. Frees those that nothing has used for long.
+// ray for each, and a probe for those that have moved. Frees those that nothing has used for long.
 #include "lib/lighting/environment.glsl"
 #include "lib/lighting/light_choice.glsl"
 #include "lib/math/sampling.glsl"
@@ -38,33 +38,75 @@ vec2 cell_pair(uint check, uint which) {
 /// Rays that find a new cell before its maker has filled it know by its samples.
 void free_cell(uint slot) {
   cache_keys[slot] = 0u;
-  cells[slot].samples = cells[slot].updated = 0u;
+  cells[slot].samples = cells[slot].state = 0u;
   cells[slot].direct = cells[slot].indirect = vec3(0.0);
 }
 
-/// Whether the cell is one of those that are updated. All cells are counted for the next frame.
+uint counted_before(uint counts) {
+  return cache_keys[counts + (constants.frame_number + 1u) % 2u];
+}
+/// For the next frame.
+void count_cell(uint counts) {
+  atomicAdd(cache_keys[counts + constants.frame_number % 2u], 1u);
+}
+
+uint idle_frames(RadianceCell cell) {
+  return constants.frame_number - cell.last_used;
+}
+
+bool is_forgotten(RadianceCell cell) {
+  bool crowded = counted_before(cache_counts) > cache_crowd;
+  return idle_frames(cell) > (crowded ? cache_crowd_lifetime : cache_lifetime);
+}
+
+/// After a change of light: few, or none where nothing is about to update them.
+uint remaining_samples(RadianceCell cell) {
+  return min(cell.samples, idle_frames(cell) > cache_used_frames ? 0u : cache_new_samples);
+}
+
+/// Whether the cell is one of those that are updated.
 bool is_due(RadianceCell cell, uint check) {
-  atomicAdd(cache_keys[cache_counts + constants.frame_number % 2u], 1u);
-  uint before = cache_keys[cache_counts + (constants.frame_number + 1u) % 2u];
-  float probability = constants.updates / float(max(before, 1u));
+  count_cell(cache_counts);
+  if (cell.state == cell_split || idle_frames(cell) > cache_used_frames) return false;
+  count_cell(cache_used_counts);
+  float probability = constants.updates / float(max(counted_before(cache_used_counts), 1u));
   if (cell.samples < cache_new_samples) probability *= cache_new_factor;
   return cell_number(check, 0u) < probability;
 }
 
+/// From where the cell was to where it is. @return whether it has moved
+bool probe_of(RadianceCell cell, uint slot, out Ray ray) {
+  if (cell.moved == 0u || cell.splits >= most_splits) return false;
+  cells[slot].moved = 0u;
+  vec3 end = raised(cell.position, cell.normal, cell.size);
+  float far = distance(cell.anchor, end);
+  ray.origin = cell.anchor;
+  ray.t_min = 0.0;
+  ray.direction = (end - cell.anchor) / max(far, 1e-30);
+  ray.t_max = far;
+  ray.pixel = slot;
+  ray.user = probe_mark;
+  ray.padding0 = ray.padding1 = 0u;
+  return far > 0.0;
+}
+
 void main() {
   uint slot = gl_GlobalInvocationID.x;
-  bool gathers = false, lit = false;
-  Ray ray, shadow;
+  bool gathers = false, lit = false, probes = false;
+  Ray ray, shadow, probe;
   if (constants.reset != 0u) free_cell(slot);
   uint check = cache_keys[slot];
   if (check != 0u) {
     RadianceCell cell = cells[slot];
-    cells[slot].updated = cells[slot].priority = 0u;
-    if (constants.frame_number - cell.last_used > constants.lifetime) {
+    cells[slot].priority = 0u;
+    if (cell.state != cell_split) cells[slot].state = cell_rests;
+    if (constants.forget != 0u) cell.samples = cells[slot].samples = remaining_samples(cell);
+    if (is_forgotten(cell)) {
       free_cell(slot);
     } else if (is_due(cell, check)) {
       gathers = true;
-      cells[slot].updated = 1u;
+      probes = probe_of(cell, slot, probe);
+      cells[slot].state = cell_updated;
       cells[slot].new_direct = cells[slot].new_indirect = vec3(0.0);
       ray.origin = offset_origin(cell.position, cell.normal, 0.0);
       ray.t_min = 0.0;
@@ -91,6 +133,8 @@ void main() {
     }
   }
   APPEND_RAY(gathers, ray)
+  barrier();
+  APPEND_RAY(probes, probe)
   barrier();
   APPEND_RAY_TO(shadow_count, shadow_rays, lit, shadow)
 }

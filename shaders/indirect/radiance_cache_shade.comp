@@ -15,10 +15,24 @@ layout(set = 1, binding = 4, std430) buffer Cells { RadianceCell cells[]; };
 layout(push_constant) uniform Constants { RadianceCacheConstants constants; };
 #include "lib/lighting/gathered_light.glsl"
 
+/// A probe that meets nothing has reached the cell's new place.
+void end_probe(Ray ray, Hit hit) {
+  cells[ray.pixel].anchor = ray.origin + ray.direction * ray.t_max;
+  if (hit.instance == hit_none) return;
+  HitSurface s = hit_surface(hit, ray.direction, 0.0);
+  cells[ray.pixel].anchor = s.position;
+  cells[ray.pixel].new_direct = s.geometric;
+  cells[ray.pixel].state = cell_blocked;
+}
+
 void main() {
   uint index = ray_index();
   if (index >= ray_count.count) return;
   Ray ray = rays[index];
+  if (ray.user == probe_mark) {
+    end_probe(ray, hits[index]);
+    return;
+  }
   bool known;
   vec3 light = sanitize(gathered_light(ray, hits[index], constants, known));
   cells[ray.pixel].new_indirect = known ? light : cells[ray.pixel].indirect;

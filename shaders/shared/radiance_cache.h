@@ -8,9 +8,17 @@ SHARED_BEGIN
 // Cells lie in buckets, in any of whose slots a cell may be. Key 0: the slot is free.
 SHARED_CONSTANT uint cache_cells = 65536u;
 SHARED_CONSTANT uint cache_bucket = 8u;
-// Behind the keys: how many cells there are, counted in frames of even and of odd numbers.
+// Behind the keys: how many cells there are and how many of them may be updated, each counted in
+// frames of even and of odd numbers.
 SHARED_CONSTANT uint cache_counts = cache_cells;
-SHARED_CONSTANT uint cache_words = cache_cells + 2u;
+SHARED_CONSTANT uint cache_used_counts = cache_cells + 2u;
+SHARED_CONSTANT uint cache_words = cache_cells + 4u;
+// Cells that nothing has asked for in so many frames are not updated, and freed after so many:
+// sooner where there are more cells than this.
+SHARED_CONSTANT uint cache_used_frames = 8u;
+SHARED_CONSTANT uint cache_lifetime = 64u;
+SHARED_CONSTANT uint cache_crowd = 49152u;
+SHARED_CONSTANT uint cache_crowd_lifetime = 16u;
 // Cells of fewer samples are updated so much more often.
 SHARED_CONSTANT uint cache_new_samples = 4u;
 SHARED_CONSTANT float cache_new_factor = 8.0f;
@@ -21,29 +29,44 @@ SHARED_CONSTANT float unknown_openness = 0.5f;
 // One of so many rays moves the cell that it asks for.
 SHARED_CONSTANT uint moves_every = 8u;
 
+// Probes are rays from the place of a cell before it moved to the new one, each raised from its
+// surface by this fraction of the cell's size: what is lower does not hide them from each other.
+SHARED_CONSTANT float cell_lift = 0.125f;
+SHARED_CONSTANT uint probe_mark = 0x3f800000u;  // Ray::user of probes: the bits of 1.0
+// How often a cell is split, by the plane of what a probe has met.
+SHARED_CONSTANT uint most_splits = 3u;
+
+// RadianceCell::state
+SHARED_CONSTANT uint cell_rests = 0u;
+SHARED_CONSTANT uint cell_updated = 1u;  // there is a sample of this frame
+SHARED_CONSTANT uint cell_blocked = 2u;  // is split at the end of its update
+SHARED_CONSTANT uint cell_split = 3u;    // knows nothing: its two halves are cells of their own
+
 struct RadianceCell {
-  vec3 position;   // of a surface in the cell, world
+  vec3 position;   // of a surface in the cell, world; of the plane that splits it
   uint last_used;  // number of the frame
-  vec3 normal;     // of that surface, geometric
+  vec3 normal;     // of that surface, geometric; of the plane
   uint samples;    // in the means; 0: nothing is known
   vec3 direct;     // irradiance / pi by lights
   uint priority;   // random, of the place that it has been moved to in this frame
   vec3 indirect;   // and by everything else
-  float padding1;
-  vec3 new_direct;  // this frame's sample
-  uint updated;     // 1: there is one
+  float size;         // edge length, metres
+  vec3 new_direct;    // this frame's sample; of blocked cells the normal of the plane
+  uint state;
   vec3 new_indirect;
-  float padding2;
+  uint splits;   // of cells that this is a part of
+  vec3 anchor;   // the place that probes have reached, raised; of blocked cells one on the plane
+  uint moved;    // 1: since then
 };
 
 struct RadianceCacheConstants {
   uint frame_number;
-  uint reset;           // 1: forgets all cells
+  uint reset;           // 1: frees all cells
+  uint forget;          // 1: their light has changed
   float cell_angle;     // size of cells as a fraction of their distance
   float cell_fraction;  // largest size as a fraction of the length of the ray that asks
   float least_size;     // metres
   uint most_samples;    // in a mean
-  uint lifetime;        // frames without use
   float updates;        // cells in each frame, about
   float least_weight;   // of a new sample
 };

@@ -105,8 +105,7 @@ class HitShading {
                                    Mask lit) {
     const bool diffuse = enabled(shared::frame_environment_diffuse);
     const Float3 open = diffuse ? environment_.irradiance(m.normal) : numbers(0.0f);
-    const CachedLanes cached =
-        cached_light(*cache_, s.position, s.geometric, t, order, lit, touches_);
+    const CachedLanes cached = cached_light(*cache_, s, t, order, lit, touches_);
     const Float3 irradiance =
         select(cached.known, cached.indirect, open * number(shared::unknown_openness));
     return reflected_light(m, irradiance, open, environment_, frame_.flags);

@@ -17,7 +17,8 @@ vec3 gathered_light(Ray ray, Hit hit, RadianceCacheConstants c, out bool known) 
   vec3 light = own_light(s);
   if (is_unlit(s)) return light;
   SurfaceMaterial m = material_of(s, ray.direction);
-  CachedLight cached = cached_light(s.position, s.geometric, hit.t, c);
+  SeenPlace at = SeenPlace(s.position, s.geometric, dot(s.front, s.geometric) < 0.0);
+  CachedLight cached = cached_light(at, hit.t, c);
   known = cached.known;
   // Specular lobes send on what they get, as if it came from everywhere.
   vec3 albedo = wide_albedo(m) + m.specular_albedo;

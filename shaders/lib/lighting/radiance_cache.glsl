@@ -34,11 +34,29 @@ uint normal_axis(vec3 n) {
   return n.z >= 0.0 ? 4u : 5u;
 }
 
-CellKey cell_key(vec3 position, vec3 normal, int level) {
-  ivec3 cell = ivec3(floor(position * exp2(float(-level))));
+/// Where a ray has met a surface.
+struct SeenPlace {
+  vec3 position;  // world
+  vec3 normal;    // geometric, world, on the side that the ray has come from
+  bool is_back;   // of the triangle
+};
+
+CellKey cell_key(SeenPlace at, int level) {
+  ivec3 cell = ivec3(floor(at.position * exp2(float(-level))));
   uvec3 hashed = pcg3d(uvec3(cell));
-  hashed = pcg3d(hashed + uvec3(uint(level + 64) * 8u + normal_axis(normal), 0u, 0u));
+  uint side = normal_axis(at.normal) + (at.is_back ? 6u : 0u);
+  hashed = pcg3d(hashed + uvec3(uint(level + 64) * 16u + side, 0u, 0u));
   return CellKey((hashed.x % (cache_cells / cache_bucket)) * cache_bucket, max(hashed.y, 1u));
+}
+
+/// Of a half of a split cell.
+CellKey half_key(CellKey whole, bool in_front) {
+  uvec3 hashed = pcg3d(uvec3(whole.first, whole.check, in_front ? 1u : 2u));
+  return CellKey((hashed.x % (cache_cells / cache_bucket)) * cache_bucket, max(hashed.y, 1u));
+}
+
+vec3 raised(vec3 position, vec3 normal, float size) {
+  return position + normal * (cell_lift * size);
 }
 
 uint find_cell(CellKey key) {
@@ -48,26 +66,46 @@ uint find_cell(CellKey key) {
   return no_cell;
 }
 
+/// The key of the part of a split cell that has the place; of whole cells their own.
+CellKey part_key(SeenPlace at, int level, uint frame_number, out uint splits) {
+  CellKey key = cell_key(at, level);
+  vec3 place = raised(at.position, at.normal, exp2(float(level)));
+  for (splits = 0u; splits < most_splits; ++splits) {
+    uint slot = find_cell(key);
+    if (slot == no_cell || cells[slot].state != cell_split) break;
+    cells[slot].last_used = frame_number;
+    key = half_key(key, dot(place - cells[slot].position, cells[slot].normal) > 0.0);
+  }
+  return key;
+}
+
 /// Finds a cell or makes it, if there is a free slot. Which place of a cell is updated changes: a
 /// random one of those that are asked for, so that its mean is theirs.
-uint touch_cell(vec3 position, vec3 normal, int level, uint frame_number) {
-  CellKey key = cell_key(position, normal, level);
+uint touch_cell(SeenPlace at, int level, uint frame_number) {
+  uint splits;
+  CellKey key = part_key(at, level, frame_number, splits);
   uint slot = find_cell(key);
   for (uint i = 0u; i < cache_bucket && slot == no_cell; ++i) {
-    uint at = key.first + i;
-    uint before = atomicCompSwap(cache_keys[at], 0u, key.check);
+    uint free = key.first + i;
+    uint before = atomicCompSwap(cache_keys[free], 0u, key.check);
     if (before == 0u) {
-      cells[at].position = position;
-      cells[at].normal = normal;
+      float size = exp2(float(level));
+      cells[free].position = at.position;
+      cells[free].normal = at.normal;
+      cells[free].size = size;
+      cells[free].splits = splits;
+      cells[free].anchor = raised(at.position, at.normal, size);
+      cells[free].moved = 0u;
     }
-    if (before == 0u || before == key.check) slot = at;
+    if (before == 0u || before == key.check) slot = free;
   }
   if (slot == no_cell) return slot;
   cells[slot].last_used = frame_number;
-  uvec3 random = pcg3d(floatBitsToUint(position) + frame_number);
+  uvec3 random = pcg3d(floatBitsToUint(at.position) + frame_number);
   if (random.x % moves_every == 0u && atomicMax(cells[slot].priority, random.y) < random.y) {
-    cells[slot].position = position;
-    cells[slot].normal = normal;
+    cells[slot].position = at.position;
+    cells[slot].normal = at.normal;
+    cells[slot].moved = 1u;
   }
   return slot;
 }
@@ -80,11 +118,11 @@ struct CachedLight {
 };
 
 /// `t`: length of the ray that asks, metres.
-CachedLight cached_light(vec3 position, vec3 normal, float t, RadianceCacheConstants c) {
-  int coarse = cell_level(position, c);
+CachedLight cached_light(SeenPlace at, float t, RadianceCacheConstants c) {
+  int coarse = cell_level(at.position, c);
   int level = clamp(cell_level_of_ray(t, c), coarse - finer_levels, coarse);
   for (uint i = 0u; i < 2u; ++i) {
-    uint slot = touch_cell(position, normal, level, c.frame_number);
+    uint slot = touch_cell(at, level, c.frame_number);
     if (slot != no_cell && cells[slot].samples > 0u) {
       return CachedLight(cells[slot].direct, cells[slot].indirect, true);
     }

@@ -40,7 +40,8 @@ layout(push_constant) uniform Constants {
 /// Light that comes from no light source: without a cache the environment's, as if nothing hid it.
 vec3 surrounding_light(HitSurface s, SurfaceMaterial m, float t) {
 #ifdef READS_RADIANCE_CACHE
-  CachedLight cached = cached_light(s.position, s.geometric, t, cache);
+  SeenPlace at = SeenPlace(s.position, s.geometric, dot(s.front, s.geometric) < 0.0);
+  CachedLight cached = cached_light(at, t, cache);
   vec3 open = enabled(frame_environment_diffuse) ? environment_irradiance(m.normal) : vec3(0.0);
   return reflected_light(m, cached.known ? cached.indirect : open * unknown_openness, open);
 #else

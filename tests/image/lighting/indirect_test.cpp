@@ -132,31 +132,116 @@ double ceiling(RendererRig& rig) {
   return mean_of(rig.capture("hdr"), {16, 2}, {44, 8}).x;
 }
 
-// At 15 frames a second 8 frames are about half a second, 22 are 1.5 s. Light that has gone around
-// comes back more slowly than it goes.
+// 15 frames are half a second. Light that has gone around comes back more slowly than it goes.
 TEST(Indirect, FollowsALightThatIsSwitched) {
   const auto scene = cornell_box();
   RendererRig rig(scene, scene::constant_environment(glm::vec3(0.0f)),
                   look({0, 0, 3.6f}, {0, 0, 0}, 38.0f), 60, 60);
-  rig.renderer.set_frame_seconds(1.0f / 15.0f);
+  rig.renderer.set_frame_seconds(1.0f / 30.0f);
   rig.apply(gathered());
-  play(rig, 64);
+  play(rig, 256);
   const double before = ceiling(rig);
   std::vector<shared::Light> lights{scene->lights[0].device};
   lights[0].color = glm::vec3(0.0f);
   rig.renderer.set_lights(lights);
-  play(rig, 8);
+  play(rig, 15);
   EXPECT_LT(ceiling(rig), 0.1 * before);
-  play(rig, 14);
+  play(rig, 30);
   EXPECT_LT(ceiling(rig), 0.01 * before);
   lights[0].color = scene->lights[0].device.color;
   rig.renderer.set_lights(lights);
-  play(rig, 8);
-  EXPECT_GT(ceiling(rig), 0.65 * before);
-  play(rig, 14);
-  EXPECT_GT(ceiling(rig), 0.85 * before);
+  play(rig, 15);
+  EXPECT_GT(ceiling(rig), 0.8 * before);
+  play(rig, 30);
+  EXPECT_GT(ceiling(rig), 0.9 * before);
   play(rig, 64);
   EXPECT_NEAR(ceiling(rig) / before, 1.0, 0.08);
+}
+
+/// Two rooms, the left one with a light, and a wall of 2 cm between them that leaves no gap and
+/// lies away from the borders of cells. The clip "open" raises it within 0.2 s.
+std::shared_ptr<const scene::Scene> two_rooms(float albedo) {
+  SceneBuilder builder;
+  std::array<Corners, 6> walls = box_walls();
+  for (Corners& wall : walls) {
+    for (glm::vec3& corner : wall) corner.x *= 2.0f;
+  }
+  builder.place(builder.add_quads(walls, surface(glm::vec3(albedo))));
+  const std::array<Corners, 2> between{
+      {{{{0.02f, -1, -1}, {0.02f, -1, 1}, {0.02f, 1, 1}, {0.02f, 1, -1}}},
+       {{{0.04f, -1, 1}, {0.04f, -1, -1}, {0.04f, 1, -1}, {0.04f, 1, 1}}}}};
+  builder.place(builder.add_quads(between, surface(glm::vec3(albedo))));
+  builder.add_point_light({-1, 0.5f, 0}, glm::vec3(1.0f));
+  auto scene = std::make_shared<scene::Scene>(*builder.build());
+  constexpr float seconds = 0.2f;
+  scene::Channel raised;
+  raised.node = 1;
+  raised.times = {0.0f, seconds};
+  raised.values = {0, 0, 0, 0, 2, 0};
+  scene->clips = {{"open", seconds, {raised}}};
+  return scene;
+}
+
+scene::Camera left_room() {
+  return look({-1.8f, 0, 0.8f}, {-0.5f, 0, -0.5f}, 70.0f);
+}
+scene::Camera right_room() {
+  return look({1.8f, 0, 0.8f}, {0.5f, 0, -0.5f}, 70.0f);
+}
+
+TEST(Indirect, LittleLightLeaksThroughThinWalls) {
+  RendererRig rig(two_rooms(0.8f), scene::constant_environment(glm::vec3(0.0f)), left_room(), 64,
+                  48);
+  rig.apply(gathered());
+  rig.accumulate(64);
+  const double lit = mean_of(rig.capture("accumulated"), {0, 0}, {64, 48}).x;
+  rig.renderer.set_camera(right_room());
+  save_image("indirect_leak", rig.accumulate(64));
+  const double dark = mean_of(rig.capture("accumulated"), {0, 0}, {64, 48}).x;
+  std::printf("light that leaks: %.4f of the lit room's\n", dark / lit);
+  EXPECT_GT(lit, 0.05);
+  EXPECT_LT(dark, 0.02 * lit);
+}
+
+// Half a second after the wall has come to rest.
+TEST(Indirect, FollowsAWallThatMoves) {
+  RendererRig rig(two_rooms(0.5f), scene::constant_environment(glm::vec3(0.0f)), right_room(), 64,
+                  48);
+  rig.apply(gathered());
+  rig.renderer.set_frame_seconds(1.0f / 30.0f);
+  const auto move = [&](float from, float to) {
+    for (int i = 0; i <= 6; ++i) {
+      const float along = from + (to - from) * float(i) / 6.0f;
+      EXPECT_TRUE(rig.renderer.set_pose("open", 0.2 * along));
+      rig.renderer.render();
+    }
+  };
+  const auto wait = [&](int frames) {
+    for (int i = 0; i < frames; ++i) {
+      scene::Camera camera = right_room();
+      camera.eye.y += 0.002f * float(i % 2);
+      rig.renderer.set_camera(camera);
+      rig.renderer.render();
+    }
+  };
+  const auto indirect = [&] {
+    return mean_of(rig.capture("indirect.history"), {0, 0}, {64, 48}).x;
+  };
+  move(0, 0);
+  wait(64);
+  const double closed = indirect();
+  move(0, 1);
+  wait(15);
+  const double soon = indirect();
+  wait(128);
+  const double open = indirect();
+  EXPECT_GT(open, 10.0 * closed);
+  EXPECT_NEAR(soon, open, 0.1 * (open - closed));
+  move(1, 0);
+  wait(15);
+  EXPECT_LT(indirect(), closed + 0.1 * (open - closed));
+  wait(30);
+  EXPECT_LT(indirect(), closed + 0.01 * (open - closed));
 }
 
 TEST(Indirect, FramesDoNotDependOnThreads) {

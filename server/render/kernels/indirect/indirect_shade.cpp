@@ -11,8 +11,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
-HWY_INLINE void store_light(const IndirectShadeJob& job, const RayLanes& ray, const Float3& light,
-                            Mask known, Mask requested) {
+HWY_INLINE void store_light(const IndirectShadeJob& job, const RayLanes& ray,
+                            const GatheredLanes& gathered, Mask requested) {
+  const auto& [light, known, met, position, normal] = gathered;
   const Texels<4> texels(
       Float4{hn::IfThenElseZero(known, light.x), hn::IfThenElseZero(known, light.y),
              hn::IfThenElseZero(known, light.z), select(known, one(), number(-1.0f))});
@@ -20,15 +21,32 @@ HWY_INLINE void store_light(const IndirectShadeJob& job, const RayLanes& ray, co
   for_each_lane(requested, [&](std::size_t lane) { texels.put(job.radiance, lane, indices); });
 }
 
-/// What cells do not know leaves their mean as it is.
+/// What cells do not know leaves their mean as it is. Probes that meet nothing have reached
+/// the cell's new place.
 HWY_INLINE void store_light(const RadianceCacheShadeJob& job, const RayLanes& ray,
-                            const Float3& light, Mask known, Mask requested) {
-  const StoredTriples values(light);
+                            const GatheredLanes& gathered, Mask requested) {
   const LaneIndices<Tag> slots(ray.pixel);
-  const std::uint64_t all_known = mask_bits(known);
-  for_each_lane(requested, [&](std::size_t lane) {
-    shared::RadianceCell& cell = job.cells[slots.of[lane]];
-    cell.new_indirect = all_known >> lane & 1 ? values.at(lane) : cell.indirect;
+  const auto cell_of = [&](std::size_t lane) -> shared::RadianceCell& {
+    return job.cells[slots.of[lane]];
+  };
+  const Mask probes = hn::And(hn::Gt(ray.user.x, zero()), requested);
+  const StoredTriples values(gathered.light);
+  const std::uint64_t known = mask_bits(gathered.known);
+  for_each_lane(hn::AndNot(probes, requested), [&](std::size_t lane) {
+    shared::RadianceCell& cell = cell_of(lane);
+    cell.new_indirect = known >> lane & 1 ? values.at(lane) : cell.indirect;
+  });
+  if (none(probes)) return;
+  const StoredTriples places(
+      select(gathered.met, gathered.position, ray.origin + ray.direction * ray.t_max));
+  const StoredTriples normals(gathered.normal);
+  const std::uint64_t met = mask_bits(gathered.met);
+  for_each_lane(probes, [&](std::size_t lane) {
+    shared::RadianceCell& cell = cell_of(lane);
+    cell.anchor = places.at(lane);
+    if ((met >> lane & 1) == 0) return;
+    cell.new_direct = normals.at(lane);
+    cell.state = shared::cell_blocked;
   });
 }
 
@@ -38,9 +56,7 @@ HWY_INLINE void shade_gathered(const Job& job, CacheReader& cache, int first, in
   std::vector<CacheTouch> touches;
   for (int i = first; i < last; i += static_cast<int>(hn::Lanes(tag))) {
     const RayLanes ray = load_rays(job.rays.rays, i, last);
-    Float3 light;
-    const Mask known = gathered.block(i, last, ray, light, touches);
-    store_light(job, ray, light, known,
+    store_light(job, ray, gathered.block(i, last, ray, touches),
                 float_mask(hn::Lt(hn::Iota(integer_tag, i), integer(last))));
   }
   cache.add(touches);

@@ -46,10 +46,11 @@ std::uint32_t normal_axis(const vec3& n) {
   return n.z >= 0.0f ? 4 : 5;
 }
 
-CellKey cell_key(const vec3& position, const vec3& normal, int level) {
-  const vec3 cell = glm::floor(position * std::ldexp(1.0f, -level));
+CellKey cell_key(const SeenPlace& at, int level) {
+  const vec3 cell = glm::floor(at.position * std::ldexp(1.0f, -level));
   uvec3 hashed = pcg3d(uvec3(glm::ivec3(cell)));
-  hashed.x += static_cast<std::uint32_t>(level + 64) * 8u + normal_axis(normal);
+  const std::uint32_t side = normal_axis(at.normal) + (at.is_back ? 6u : 0u);
+  hashed.x += static_cast<std::uint32_t>(level + 64) * 16u + side;
   hashed = pcg3d(hashed);
   constexpr std::uint32_t buckets = shared::cache_cells / shared::cache_bucket;
   return {hashed.x % buckets * shared::cache_bucket, std::max(hashed.y, 1u)};
@@ -60,6 +61,17 @@ std::uint32_t find_slot(const std::uint32_t* keys, const CellKey& key) {
     if (keys[key.first + i] == key.check) return key.first + i;
   }
   return no_cell;
+}
+
+/// Of a half of a split cell.
+CellKey half_key(const CellKey& whole, bool in_front) {
+  const uvec3 hashed = pcg3d({whole.first, whole.check, in_front ? 1u : 2u});
+  constexpr std::uint32_t buckets = shared::cache_cells / shared::cache_bucket;
+  return {hashed.x % buckets * shared::cache_bucket, std::max(hashed.y, 1u)};
+}
+
+vec3 raised(const vec3& position, const vec3& normal, float size) {
+  return position + normal * (shared::cell_lift * size);
 }
 
 /// Of a place for its cell; 0: the cell stays where it is.
@@ -73,7 +85,7 @@ std::uint32_t priority_of(const vec3& position, std::uint32_t frame_number) {
 CacheReader::Lookup CacheReader::begin(const CacheQuery& ray) const {
   const shared::RadianceCacheConstants& c = constants_;
   Lookup made;
-  const float seen_from_eye = glm::distance(ray.position, eye_) * c.cell_angle;
+  const float seen_from_eye = glm::distance(ray.at.position, eye_) * c.cell_angle;
   made.coarse = level_of(std::max(seen_from_eye, c.least_size));
   const int level = std::clamp(level_of(std::max(ray.t * c.cell_fraction, c.least_size)),
                                made.coarse - shared::finer_levels, made.coarse);
@@ -84,27 +96,35 @@ CacheReader::Lookup CacheReader::begin(const CacheQuery& ray) const {
 
 void CacheReader::look_at(const CacheQuery& ray, int level, Lookup& lookup) const {
   lookup.level = level;
-  lookup.key = cell_key(ray.position, ray.normal, level);
+  lookup.splits = 0;
+  lookup.key = cell_key(ray.at, level);
+}
+
+void CacheReader::follow_splits(const CacheQuery& ray, Lookup& lookup) const {
+  const vec3 place = raised(ray.at.position, ray.at.normal, std::ldexp(1.0f, lookup.level));
+  for (; lookup.splits < shared::most_splits && lookup.slot != no_cell; ++lookup.splits) {
+    const shared::RadianceCell& cell = cells_[lookup.slot];
+    if (cell.state != shared::cell_split) return;
+    use(lookup.slot);
+    lookup.key = half_key(lookup.key, glm::dot(place - cell.position, cell.normal) > 0.0f);
+    lookup.slot = find_slot(keys_, lookup.key);
+  }
 }
 
 void CacheReader::touch(const CacheQuery& ray, const Lookup& lookup,
                         std::vector<CacheTouch>& touches) const {
-  const std::uint32_t priority = priority_of(ray.position, constants_.frame_number);
+  const std::uint32_t priority = priority_of(ray.at.position, constants_.frame_number);
   if (lookup.slot == no_cell || priority > 0) {
-    touches.push_back(
-        {priority, ray.order, lookup.key.first, lookup.key.check, ray.position, ray.normal});
+    touches.push_back({priority, ray.order, lookup.key.first, lookup.key.check, lookup.splits,
+                       std::ldexp(1.0f, lookup.level), ray.at.position, ray.at.normal});
   }
-  if (lookup.slot == no_cell) return;
-  // A store would take the cell from the other processors' caches, even of the same value.
-  const std::atomic_ref last_used(cells_[lookup.slot].last_used);
-  if (last_used.load(std::memory_order_relaxed) != constants_.frame_number) {
-    last_used.store(constants_.frame_number, std::memory_order_relaxed);
-  }
+  if (lookup.slot != no_cell) use(lookup.slot);
 }
 
 CachedLight CacheReader::read(const CacheQuery& ray, Lookup& lookup,
                               std::vector<CacheTouch>& touches) const {
   while (true) {
+    follow_splits(ray, lookup);
     touch(ray, lookup, touches);
     if (lookup.slot != no_cell) {
       const shared::RadianceCell& cell = cells_[lookup.slot];
@@ -128,6 +148,14 @@ void CacheReader::find(std::span<const CacheQuery> rays, CachedLight* light,
   for (std::size_t i = 0; i < rays.size(); ++i) light[i] = read(rays[i], lookups[i], touches);
 }
 
+void CacheReader::use(std::uint32_t slot) const {
+  // A store would take the cell from the other processors' caches, even of the same value.
+  const std::atomic_ref last_used(cells_[slot].last_used);
+  if (last_used.load(std::memory_order_relaxed) != constants_.frame_number) {
+    last_used.store(constants_.frame_number, std::memory_order_relaxed);
+  }
+}
+
 void CacheReader::add(std::span<const CacheTouch> touches) {
   const std::lock_guard lock(mutex_);
   touches_.insert(touches_.end(), touches.begin(), touches.end());
@@ -147,10 +175,16 @@ void CacheReader::apply() {
       cells_[slot].last_used = constants_.frame_number;
     }
     shared::RadianceCell& cell = cells_[slot];
-    if (cell.samples > 0 && touch.priority <= cell.priority) continue;
+    const bool is_new = cell.samples == 0;
+    if (!is_new && touch.priority <= cell.priority) continue;
     cell.position = touch.position;
     cell.normal = touch.normal;
     cell.priority = touch.priority;
+    cell.moved = is_new ? 0 : 1;
+    if (!is_new) continue;
+    cell.size = touch.size;
+    cell.splits = touch.splits;
+    cell.anchor = raised(touch.position, touch.normal, touch.size);
   }
   touches_.clear();
 }
@@ -162,17 +196,32 @@ void radiance_cache_light(const RadianceCacheLightJob& job) {
       const vec3 light(std::bit_cast<float>(ray.user), std::bit_cast<float>(ray.padding0),
                        std::bit_cast<float>(ray.padding1));
       if (job.occluded[i] || !std::isfinite(light.x + light.y + light.z)) continue;
-      job.cells[ray.pixel].new_direct = light;
+      shared::RadianceCell& cell = job.cells[ray.pixel];
+      if (cell.state == shared::cell_updated) cell.new_direct = light;
     }
   });
 }
+
+namespace {
+
+void split(shared::RadianceCell& cell) {
+  cell.position = cell.anchor;
+  cell.normal = cell.new_direct;
+  cell.direct = cell.indirect = vec3(0.0f);
+  cell.samples = 0;
+  cell.state = shared::cell_split;
+}
+
+}  // namespace
 
 void radiance_cache_blend(const RadianceCacheBlendJob& job) {
   const shared::RadianceCacheConstants& constants = job.constants;
   for_each_range(shared::cache_cells, slots_of_thread, [&](int first, int last) {
     for (int i = first; i < last; ++i) {
       shared::RadianceCell& cell = job.cells[i];
-      if (job.keys[i] == 0 || cell.updated == 0) continue;
+      if (job.keys[i] == 0) continue;
+      if (cell.state == shared::cell_blocked) split(cell);
+      if (cell.state != shared::cell_updated) continue;
       cell.samples = std::min(cell.samples + 1, constants.most_samples);
       const float later = 2.0f / static_cast<float>(cell.samples + 1);
       const float weight = std::min(std::max(later, constants.least_weight), 1.0f);
@@ -180,7 +229,8 @@ void radiance_cache_blend(const RadianceCacheBlendJob& job) {
       cell.indirect = glm::mix(cell.indirect, cell.new_indirect, weight);
     }
   });
-  job.keys[shared::cache_counts + (constants.frame_number + 1) % 2] = 0;
+  const std::uint32_t before = (constants.frame_number + 1) % 2;
+  job.keys[shared::cache_counts + before] = job.keys[shared::cache_used_counts + before] = 0;
 }
 
 }  // namespace heliograph::render::kernels

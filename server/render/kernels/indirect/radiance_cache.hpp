@@ -20,18 +20,25 @@ struct CacheTouch {
   std::uint32_t order;     // of the ray, so that the outcome does not depend on threads
   std::uint32_t first;     // slot of its bucket
   std::uint32_t check;
+  std::uint32_t splits;
+  float size;  // metres
   glm::vec3 position;
   glm::vec3 normal;
+};
+
+/// Where a ray has met a surface.
+struct SeenPlace {
+  glm::vec3 position;  // world
+  glm::vec3 normal;    // geometric, world, on the side that the ray has come from
+  bool is_back;        // of the triangle
 };
 
 /// How many rays ask together, at most.
 inline constexpr std::size_t most_cache_queries = 64;
 
-/// A ray that asks for light at its hit: at `position`, with the geometric `normal`, world, after
-/// `t` metres.
+/// A ray of `t` metres that asks for light at its hit.
 struct CacheQuery {
-  glm::vec3 position;
-  glm::vec3 normal;
+  SeenPlace at;
   float t;
   std::uint32_t order;
 };
@@ -69,13 +76,16 @@ class CacheReader {
   /// The cells that a ray may read: of its own size, and where that knows nothing, the eye's.
   struct Lookup {
     int level, coarse;
+    std::uint32_t splits;
     CellKey key;
     std::uint32_t slot;
   };
   Lookup begin(const CacheQuery& ray) const;
   void look_at(const CacheQuery& ray, int level, Lookup& lookup) const;
+  void follow_splits(const CacheQuery& ray, Lookup& lookup) const;
   void touch(const CacheQuery& ray, const Lookup& lookup, std::vector<CacheTouch>& touches) const;
   CachedLight read(const CacheQuery& ray, Lookup& lookup, std::vector<CacheTouch>& touches) const;
+  void use(std::uint32_t slot) const;
 
   std::uint32_t* keys_;
   shared::RadianceCell* cells_;
@@ -98,6 +108,12 @@ struct RadianceCacheRaysJob : FrameJob<RadianceCacheRaysBindings, shared::Radian
   LobeTables tables;
 };
 void radiance_cache_rays(const RadianceCacheRaysJob& job);
+
+/// Cells of which some slots of the cache have so many.
+struct CellCounts {
+  std::uint32_t alive = 0;
+  std::uint32_t used = 0;  // of late: they may be updated
+};
 
 /// shaders/indirect/radiance_cache_shade.comp
 template <class Stage>

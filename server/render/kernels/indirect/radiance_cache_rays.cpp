@@ -53,9 +53,10 @@ class CellUpdates {
     RayBatch rays, shadows;
     for (std::size_t i = 0; i < count_; i += hn::Lanes(tag)) add_rays(i, rays, shadows);
     rays.append_to(job_.rays);
+    job_.rays.append({probes_.data(), probe_count_});
     shadows.append_to(job_.shadows);
   }
-  std::uint32_t alive() const { return alive_; }
+  CellCounts counts() const { return counts_; }
 
  private:
   bool is_due(std::uint32_t slot) {
@@ -64,20 +65,51 @@ class CellUpdates {
     if (c.reset != 0) key = 0;
     if (key == 0) return false;
     shared::RadianceCell& cell = job_.cells[slot];
-    cell.updated = cell.priority = 0;
-    if (c.frame_number - cell.last_used > c.lifetime) {
+    cell.priority = 0;
+    const std::uint32_t idle = c.frame_number - cell.last_used;
+    const std::uint32_t before = (c.frame_number + 1) % 2;
+    const bool crowded = job_.keys[shared::cache_counts + before] > shared::cache_crowd;
+    if (idle > (crowded ? shared::cache_crowd_lifetime : shared::cache_lifetime)) {
       key = 0;
       return false;
     }
-    ++alive_;
-    const std::uint32_t before = job_.keys[shared::cache_counts + (c.frame_number + 1) % 2];
-    const float share = c.updates / static_cast<float>(std::max(before, 1u));
+    ++counts_.alive;
+    if (cell.state == shared::cell_split) return false;
+    cell.state = shared::cell_rests;
+    if (c.forget != 0) forget(cell, idle);
+    if (idle > shared::cache_used_frames) return false;
+    ++counts_.used;
+    const std::uint32_t used = job_.keys[shared::cache_used_counts + before];
+    const float share = c.updates / static_cast<float>(std::max(used, 1u));
     const bool is_new = cell.samples < shared::cache_new_samples;
     const float probability = is_new ? share * shared::cache_new_factor : share;
     if (numbers_.at(key, 0).x >= probability) return false;
-    cell.updated = 1;
+    cell.state = shared::cell_updated;
     cell.new_direct = cell.new_indirect = glm::vec3(0.0f);
+    if (cell.moved != 0 && cell.splits < shared::most_splits) add_probe(slot);
     return true;
+  }
+
+  /// Light changes: few samples remain, or none where nothing is about to update them.
+  static void forget(shared::RadianceCell& cell, std::uint32_t idle) {
+    const std::uint32_t most = idle > shared::cache_used_frames ? 0 : shared::cache_new_samples;
+    cell.samples = std::min(cell.samples, most);
+  }
+
+  void add_probe(std::uint32_t slot) {
+    shared::RadianceCell& cell = job_.cells[slot];
+    cell.moved = 0;
+    const glm::vec3 end = cell.position + cell.normal * (shared::cell_lift * cell.size);
+    const float distance = glm::distance(cell.anchor, end);
+    if (!(distance > 0.0f)) return;
+    probes_[probe_count_++] = {.origin = cell.anchor,
+                               .t_min = 0.0f,
+                               .direction = (end - cell.anchor) / distance,
+                               .t_max = distance,
+                               .pixel = slot,
+                               .user = shared::probe_mark,
+                               .padding0 = 0,
+                               .padding1 = 0};
   }
 
   HWY_INLINE void add_rays(std::size_t at, RayBatch& rays, RayBatch& shadows) const {
@@ -130,13 +162,15 @@ class CellUpdates {
   CellNumbers numbers_;
   std::array<int, ray_batch> due_;
   std::size_t count_ = 0;
-  std::uint32_t alive_ = 0;
+  std::array<shared::Ray, ray_batch> probes_;
+  std::size_t probe_count_ = 0;
+  CellCounts counts_;
 };
 
-std::uint32_t cell_batch(const RadianceCacheRaysJob& job, int first, int last) {
+CellCounts cell_batch(const RadianceCacheRaysJob& job, int first, int last) {
   CellUpdates updates(job);
   updates.generate(first, last);
-  return updates.alive();
+  return updates.counts();
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE
@@ -148,11 +182,15 @@ namespace heliograph::render::kernels {
 HWY_EXPORT(cell_batch);
 
 void radiance_cache_rays(const RadianceCacheRaysJob& job) {
-  std::atomic<std::uint32_t> alive = 0;
+  std::atomic<std::uint32_t> alive = 0, used = 0;
   for_each_batch(shared::cache_cells, [&](int first, int last) {
-    alive += HWY_DYNAMIC_DISPATCH(cell_batch)(job, first, last);
+    const CellCounts counts = HWY_DYNAMIC_DISPATCH(cell_batch)(job, first, last);
+    alive += counts.alive;
+    used += counts.used;
   });
-  job.keys[shared::cache_counts + job.constants.frame_number % 2] = alive;
+  const std::uint32_t now = job.constants.frame_number % 2;
+  job.keys[shared::cache_counts + now] = alive;
+  job.keys[shared::cache_used_counts + now] = used;
   job.rays.end();
   job.shadows.end();
 }

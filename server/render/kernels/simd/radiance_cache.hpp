@@ -38,11 +38,13 @@ struct StoredTriples {
   }
 };
 
-/// `order`: of the rays, one for each.
-HWY_INLINE CachedLanes cached_light(const CacheReader& cache, const Float3& position,
-                                    const Float3& normal, Float t, Integer order, Mask requested,
+/// Where rays of length `t` have met `s`. `order`: of the rays, one for each.
+template <class Surface>
+HWY_INLINE CachedLanes cached_light(const CacheReader& cache, const Surface& s, Float t,
+                                    Integer order, Mask requested,
                                     std::vector<CacheTouch>& touches) {
-  const StoredTriples positions(position), normals(normal);
+  const StoredTriples positions(s.position), normals(s.geometric);
+  const std::uint64_t backs = mask_bits(hn::Lt(dot(s.front, s.geometric), zero()));
   const LaneIndices<Tag> orders(order);
   HWY_ALIGN std::array<float, hn::MaxLanes(Tag())> lengths;
   hn::Store(t, tag, lengths.data());
@@ -51,8 +53,8 @@ HWY_INLINE CachedLanes cached_light(const CacheReader& cache, const Float3& posi
   std::array<CachedLight, hn::MaxLanes(Tag())> found;
   std::size_t count = 0;
   for_each_lane(requested, [&](std::size_t lane) {
-    rays[count++] = {positions.at(lane), normals.at(lane), lengths[lane],
-                     static_cast<std::uint32_t>(orders.of[lane])};
+    const SeenPlace at{positions.at(lane), normals.at(lane), (backs >> lane & 1) != 0};
+    rays[count++] = {at, lengths[lane], static_cast<std::uint32_t>(orders.of[lane])};
   });
   cache.find({rays.data(), count}, found.data(), touches);
   StoredTriples direct(numbers(0.0f)), indirect(numbers(0.0f));
@@ -86,6 +88,14 @@ HWY_INLINE Float3 reflected_light(const Material& m, const Float3& irradiance, c
   return wide_albedo(m) * irradiance + specular;
 }
 
+/// What rays that gather bring.
+struct GatheredLanes {
+  Float3 light;
+  Mask known;
+  Mask met;
+  Float3 position, normal;  // geometric, of what they have met
+};
+
 /// The hits of rays that gather indirect light. `Job` has scene, environment, tables and cache.
 template <class Surface, class Job>
 class GatheredLight {
@@ -93,32 +103,33 @@ class GatheredLight {
   GatheredLight(const Job& job, const CacheReader& cache)
       : job_(job), cache_(cache), environment_(job.frame, job.environment), tables_(job.tables) {}
 
-  /// Radiance along the rays from `first` on. @return where it is known
-  HWY_INLINE Mask block(int first, int last, const RayLanes& ray, Float3& light,
-                        std::vector<CacheTouch>& touches) const {
+  /// Radiance along the rays from `first` on. Probes ask for no cell.
+  HWY_INLINE GatheredLanes block(int first, int last, const RayLanes& ray,
+                                 std::vector<CacheTouch>& touches) const {
     const Mask requested = float_mask(hn::Lt(hn::Iota(integer_tag, first), integer(last)));
     const HitLanes hit = load_hits(job_.hits, first, last);
     const Mask missed = hn::AndNot(hit.met, requested);
-    light = numbers(0.0f);
+    Float3 light = numbers(0.0f);
     if (!none(missed) && enabled(shared::frame_environment_diffuse)) {
       light = environment_.radiance(ray.direction);
     }
-    if (none(hit.met)) return requested;
+    if (none(hit.met)) return {light, requested, hit.met, light, light};
     constexpr float spread = 0.25f;  // gathering_spread of gathered_light.glsl
     const auto s =
         hit_surface<Surface, true>(job_.scene, hit, ray.direction, hit.t * number(spread));
     const auto m = material_of(s, ray.direction, tables_);
     const Mask unlit = hn::And(hit.met, s.has(shared::material_unlit));
-    const Mask lit = hn::AndNot(unlit, hit.met);
-    const CachedLanes cached =
-        cached_light(cache_, s.position, s.geometric, hit.t, ray.pixel, lit, touches);
+    const Mask probes = hn::Gt(ray.user.x, zero());
+    const Mask lit = hn::AndNot(hn::Or(unlit, probes), hit.met);
+    const CachedLanes cached = cached_light(cache_, s, hit.t, ray.pixel, lit, touches);
     Float3 sent = (wide_albedo(m) + m.specular_albedo) * (cached.direct + cached.indirect);
     sent = select(unlit, s.base_color, sent);
     if (enabled(shared::frame_emissive)) sent = sent + s.emissive;
     if constexpr (Surface::layered) sent = sent * (one() / (one() - s.passing));
     sent = select(is_bad(sent), numbers(0.0f), sent);
     light = select(hit.met, sent, light);
-    return hn::AndNot(hn::AndNot(cached.known, lit), requested);
+    const Mask known = hn::AndNot(hn::AndNot(cached.known, lit), requested);
+    return {light, known, hit.met, s.position, s.geometric};
   }
 
  private:

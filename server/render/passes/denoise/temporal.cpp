@@ -198,13 +198,14 @@ RadianceChannel specular_channel(const FrameInputs& in, const SampleHistories& h
 RadianceChannel indirect_channel(gpu::FramePlan& plan, const FrameInputs& in,
                                  const SampleHistories& histories) {
   const auto& buffers = indirect_temporal_buffers;
-  // The first frames know few bounces, the last before a change other light: the later half of
-  // those since is enough.
+  // The first frames know few bounces: the later half of all is enough. Light that has changed, or
+  // that objects let in or shut out, lags by half of `moving_seconds` behind the cache.
   const auto most_frames = [&clock = in.clock, &motion = in.scene_motion] {
-    constexpr std::uint32_t least_known = 4, least_changed = 8;
-    const std::uint32_t known = std::max(clock.age / 2, least_known);
-    return static_cast<float>(
-        std::min(known, std::max(motion.still_light_frames / 2, least_changed)));
+    constexpr std::uint32_t least_frames = 4;
+    constexpr float moving_seconds = 0.25f;
+    const auto known = static_cast<float>(std::max(clock.age / 2, least_frames));
+    if (motion.settled() || clock.seconds <= 0.0f) return known;
+    return std::min(known, std::max(moving_seconds / clock.seconds, float(least_frames)));
   };
   return {.name = "indirect",
           .buffers = buffers,

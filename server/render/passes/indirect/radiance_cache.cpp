@@ -17,20 +17,26 @@ shared::RadianceCacheConstants cache_constants(const FrameInputs& in) {
   const float size = 2.0f * in.scene.scene->bounds.radius();
   shared::RadianceCacheConstants made{};
   made.frame_number = in.constants.sample_index;
-  made.reset = in.constants.history_invalid;
+  // Buffers are new where the sequences begin; otherwise light has changed, and places have not.
+  made.reset = in.constants.history_invalid != 0 && in.constants.sample_index == 0;
+  made.forget = in.constants.history_invalid;
   made.cell_angle = settings.cell_angle;
   made.least_size = size / 2048.0f;
-  made.most_samples = static_cast<std::uint32_t>(settings.most_samples);
-  made.lifetime = 64;
   made.cell_fraction = 0.5f;
   // A static view has time: nothing waits for its samples. A cache that knows little needs them,
   // and forgets those that were taken before light had gone around. What moves changes light here
   // and there, at every frame.
+  constexpr std::uint32_t bounces = 10;
   const SceneMotion& motion = in.scene_motion;
   const bool young = in.clock.is_young() || motion.still_light_frames < FrameClock::young_frames;
-  const float factor = young || in.clock.samples > 0 ? 4.0f : motion.settled() ? 1.0f : 2.0f;
+  const bool moving = !motion.settled();
+  const float factor = young || moving || in.clock.samples > 0 ? 4.0f : 1.0f;
+  made.most_samples = static_cast<std::uint32_t>(settings.most_samples);
+  if (young || moving) {
+    made.most_samples = std::min(made.most_samples, shared::cache_new_samples);
+  }
   made.updates = factor * static_cast<float>(settings.updates);
-  made.least_weight = young ? 0.5f : motion.settled() ? 0.0f : 0.125f;
+  made.least_weight = in.clock.age < bounces ? 1.0f : young ? 0.5f : 0.0f;
   return made;
 }
 
@@ -43,7 +49,8 @@ struct UpdateRays {
 
 UpdateRays generate(gpu::FramePlan& plan, const FrameInputs& in, const RadianceCache& cache) {
   const UpdateRays made{
-      declare_rays(plan, "radiance_cache", shared::cache_cells, tracing::RayKind::reflection),
+      // One that gathers and one between two places, for each cell.
+      declare_rays(plan, "radiance_cache", 2 * shared::cache_cells, tracing::RayKind::reflection),
       declare_rays(plan, "radiance_cache.shadows", shared::cache_cells,
                    tracing::RayKind::hit_shadow)};
   begin_rays(plan, in, "radiance_cache", made.rays);
