@@ -35,9 +35,10 @@ void main() {
     ray.direction = sample_cosine(shading, u);
     ray.t_max = 1e30;
     ray.pixel = uint(pixel.x) | uint(pixel.y) << 16u;
-    ray.user = ray.padding0 = ray.padding1 = 0u;
     // Directions below the surface, which a shading normal allows, are turned up: none is lost.
     ray.direction -= 2.0 * min(dot(ray.direction, geometric), 0.0) * geometric;
+    ray.user = ray.padding0 = 0u;
+    ray.padding1 = floatBitsToUint(max(dot(ray.direction, shading), 0.0) / pi);  // its density
     requested = true;
   }
   if (!outside_frame(pixel)) {

@@ -10,8 +10,8 @@ layout(push_constant) uniform Constants { RadianceCacheConstants constants; };
 
 void main() {
   uint slot = gl_GlobalInvocationID.x;
-  uint before = (constants.frame_number + 1u) % 2u;
-  if (slot == 0u) cache_keys[cache_counts + before] = cache_keys[cache_used_counts + before] = 0u;
+  uint next = (constants.frame_number + 1u) % cache_counters;
+  if (slot == 0u) cache_keys[cache_counts + next] = cache_keys[cache_used_counts + next] = 0u;
   if (cache_keys[slot] == 0u) return;
   if (cells[slot].state == cell_blocked) {
     cells[slot].position = cells[slot].anchor;
@@ -25,6 +25,8 @@ void main() {
   // The first samples know little of other cells' light: later ones weigh more.
   float weight = min(max(2.0 / float(samples + 1u), constants.least_weight), 1.0);
   cells[slot].direct = mix(cells[slot].direct, cells[slot].new_direct, weight);
-  cells[slot].indirect = mix(cells[slot].indirect, cells[slot].new_indirect, weight);
+  if (cells[slot].new_indirect.x >= 0.0) {
+    cells[slot].indirect = mix(cells[slot].indirect, cells[slot].new_indirect, weight);
+  }
   cells[slot].samples = samples;
 }

@@ -1,12 +1,14 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-// Chooses the cells that are updated in this frame: a shadow ray toward one light and a gathering
-// ray for each, and a probe for those that have moved. Frees those that nothing has used for long.
+// Chooses the cells that are updated in this frame: a shadow ray toward one light, or one emissive
+// triangle, and a gathering ray for each, and a probe for those that have moved. Frees those that
+// nothing has used for long.
 #include "lib/lighting/environment.glsl"
 #include "lib/lighting/light_choice.glsl"
 #include "lib/math/sampling.glsl"
 #include "lib/rays/ray_stream.glsl"
+#include "shared/emissive.h"
 #include "shared/radiance_cache.h"
 
 layout(set = 1, binding = 0, std430) buffer Keys { uint cache_keys[]; };
@@ -15,7 +17,10 @@ layout(set = 1, binding = 2, std430) buffer Count { RayCount ray_count; };
 layout(set = 1, binding = 3, std430) writeonly buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 4, std430) buffer ShadowCount { RayCount shadow_count; };
 layout(set = 1, binding = 5, std430) writeonly buffer ShadowRays { Ray shadow_rays[]; };
+// Of this frame, in scenes with emissive triangles.
+layout(set = 1, binding = 6, std430) readonly buffer Points { EmissivePoint points[]; };
 layout(push_constant) uniform Constants { RadianceCacheConstants constants; };
+#include "lib/lighting/emissive_choice.glsl"
 #include "lib/lighting/radiance_cache.glsl"
 
 /// A white surface without specular lobes.
@@ -43,11 +48,11 @@ void free_cell(uint slot) {
 }
 
 uint counted_before(uint counts) {
-  return cache_keys[counts + (constants.frame_number + 1u) % 2u];
+  return cache_keys[counts + (constants.frame_number + 2u) % cache_counters];
 }
 /// For the next frame.
 void count_cell(uint counts) {
-  atomicAdd(cache_keys[counts + constants.frame_number % 2u], 1u);
+  atomicAdd(cache_keys[counts + constants.frame_number % cache_counters], 1u);
 }
 
 uint idle_frames(RadianceCell cell) {
@@ -90,11 +95,50 @@ bool probe_of(RadianceCell cell, uint slot, out Ray ray) {
   return far > 0.0;
 }
 
+/// The shadow ray of a cell, which carries what arrives. @return whether there is one
+bool light_of_cell(RadianceCell cell, uint slot, uint check, out Ray shadow) {
+  SurfaceMaterial m = white_surface(cell.normal);
+  LightChoice choice = LightChoice(0u, 0.0, 0.0);
+  float pick = cell_number(check, 2u);
+  if (enabled(frame_direct)) choice = choose_light(m, cell.position, pick);
+  EmissiveChoice emissive = EmissiveChoice(vec3(0.0), 0.0, cell.normal, 0.0);
+  if (scene_has(scene_emissive) && enabled(frame_emissive)) {
+    vec2 u = cell_pair(check, 8u);
+    emissive = choose_emissive(cell.position, cell.normal, cell.normal, u.x, u.y);
+  }
+  // One of both, in proportion to their light.
+  float both = choice.total + emissive.total;
+  if (both <= 0.0) return false;
+  bool shines = cell_number(check, 9u) * both < emissive.total;
+  bool lit = true;
+  vec3 carried;
+  if (shines) {
+    shadow.origin = offset_origin(cell.position, cell.normal, 0.0);
+    shadow.t_min = 0.0;
+    shadow.direction = emissive.direction;
+    shadow.t_max = emissive.distance * 0.999;
+    carried = emissive.light * (both / emissive.total);
+  } else {
+    Light light = light_number(choice.number);
+    shadow = light_ray(light, m, cell.position, 0.0, cell_pair(check, 3u), pick, lit);
+    carried = light_contribution(light, m, cell.position) * (both / choice.weight);
+    if (!enabled(frame_shadows)) shadow.t_max = 0.0;
+  }
+  shadow.pixel = slot | (shines ? cache_emissive_ray : 0u);
+  shadow.user = floatBitsToUint(carried.r);
+  shadow.padding0 = floatBitsToUint(carried.g);
+  shadow.padding1 = floatBitsToUint(carried.b);
+  return lit;
+}
+
 void main() {
   uint slot = gl_GlobalInvocationID.x;
   bool gathers = false, lit = false, probes = false;
   Ray ray, shadow, probe;
-  if (constants.reset != 0u) free_cell(slot);
+  if (constants.reset != 0u) {
+    free_cell(slot);
+    if (slot < cache_words - cache_cells) cache_keys[cache_cells + slot] = 0u;
+  }
   uint check = cache_keys[slot];
   if (check != 0u) {
     RadianceCell cell = cells[slot];
@@ -113,23 +157,9 @@ void main() {
       ray.direction = sample_cosine(cell.normal, cell_pair(check, 1u));
       ray.t_max = 1e30;
       ray.pixel = slot;
-      ray.user = ray.padding0 = ray.padding1 = 0u;
-      if (enabled(frame_direct)) {
-        SurfaceMaterial m = white_surface(cell.normal);
-        float pick = cell_number(check, 2u);
-        LightChoice choice = choose_light(m, cell.position, pick);
-        if (choice.total > 0.0) {
-          Light light = light_number(choice.number);
-          shadow = light_ray(light, m, cell.position, 0.0, cell_pair(check, 3u), pick, lit);
-          vec3 carried = light_contribution(light, m, cell.position) *
-                         (choice.total / choice.weight);
-          shadow.pixel = slot;
-          shadow.user = floatBitsToUint(carried.r);
-          shadow.padding0 = floatBitsToUint(carried.g);
-          shadow.padding1 = floatBitsToUint(carried.b);
-          if (!enabled(frame_shadows)) shadow.t_max = 0.0;
-        }
-      }
+      ray.user = ray.padding0 = 0u;
+      ray.padding1 = floatBitsToUint(dot(ray.direction, cell.normal) / pi);  // its density
+      lit = light_of_cell(cell, slot, check, shadow);
     }
   }
   APPEND_RAY(gathers, ray)

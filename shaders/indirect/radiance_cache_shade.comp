@@ -35,5 +35,5 @@ void main() {
   }
   bool known;
   vec3 light = sanitize(gathered_light(ray, hits[index], constants, known));
-  cells[ray.pixel].new_indirect = known ? light : cells[ray.pixel].indirect;
+  cells[ray.pixel].new_indirect = known ? light : vec3(nothing_gathered);
 }

@@ -24,5 +24,18 @@ struct EmissiveTriangle {
 // In the list of every instance's first entry: one that is no light.
 SHARED_CONSTANT uint no_emissive = 0xffffffffu;
 
+// Points of emissive triangles that all receivers of a frame choose from.
+struct EmissivePoint {
+  vec3 position;  // world
+  float density;  // per square metre; 0: nothing was drawn
+  vec3 normal;    // of the front face
+  float both;     // 1: the back shines, too
+  vec3 emission;  // radiance
+  float padding0;
+};
+SHARED_CONSTANT uint emissive_points = 1024u;
+// Points that one receiver weighs, each from another part of the table.
+SHARED_CONSTANT uint emissive_candidates = 8u;
+
 SHARED_END
 #endif

@@ -9,10 +9,12 @@ SHARED_BEGIN
 SHARED_CONSTANT uint cache_cells = 65536u;
 SHARED_CONSTANT uint cache_bucket = 8u;
 // Behind the keys: how many cells there are and how many of them may be updated, each counted in
-// frames of even and of odd numbers.
+// this frame and the frame before, and cleared for the next: a frame that was canceled finds what
+// it found the first time.
+SHARED_CONSTANT uint cache_counters = 3u;
 SHARED_CONSTANT uint cache_counts = cache_cells;
-SHARED_CONSTANT uint cache_used_counts = cache_cells + 2u;
-SHARED_CONSTANT uint cache_words = cache_cells + 4u;
+SHARED_CONSTANT uint cache_used_counts = cache_cells + cache_counters;
+SHARED_CONSTANT uint cache_words = cache_cells + 2u * cache_counters;
 // Cells that nothing has asked for in so many frames are not updated, and freed after so many:
 // sooner where there are more cells than this.
 SHARED_CONSTANT uint cache_used_frames = 8u;
@@ -41,22 +43,26 @@ SHARED_CONSTANT uint cell_rests = 0u;
 SHARED_CONSTANT uint cell_updated = 1u;  // there is a sample of this frame
 SHARED_CONSTANT uint cell_blocked = 2u;  // is split at the end of its update
 SHARED_CONSTANT uint cell_split = 3u;    // knows nothing: its two halves are cells of their own
+// RadianceCell::new_indirect, of each color, where a gathering ray has found nothing that is known.
+SHARED_CONSTANT float nothing_gathered = -1.0f;
+// Beside a cell's number in its shadow ray: the ray goes to an emissive triangle.
+SHARED_CONSTANT uint cache_emissive_ray = 0x10000u;
 
 struct RadianceCell {
-  vec3 position;   // of a surface in the cell, world; of the plane that splits it
-  uint last_used;  // number of the frame
-  vec3 normal;     // of that surface, geometric; of the plane
-  uint samples;    // in the means; 0: nothing is known
-  vec3 direct;     // irradiance / pi by lights
-  uint priority;   // random, of the place that it has been moved to in this frame
-  vec3 indirect;   // and by everything else
-  float size;         // edge length, metres
-  vec3 new_direct;    // this frame's sample; of blocked cells the normal of the plane
+  vec3 position;    // of a surface in the cell, world; of the plane that splits it
+  uint last_used;   // number of the frame
+  vec3 normal;      // of that surface, geometric; of the plane
+  uint samples;     // in the means; 0: nothing is known
+  vec3 direct;      // irradiance / pi by lights
+  uint priority;    // random, of the place that it has been moved to in this frame
+  vec3 indirect;    // and by everything else, emissive triangles too
+  float size;       // edge length, metres
+  vec3 new_direct;  // this frame's sample; of blocked cells the normal of the plane
   uint state;
   vec3 new_indirect;
-  uint splits;   // of cells that this is a part of
-  vec3 anchor;   // the place that probes have reached, raised; of blocked cells one on the plane
-  uint moved;    // 1: since then
+  uint splits;  // of cells that this is a part of
+  vec3 anchor;  // the place that probes have reached, raised; of blocked cells one on the plane
+  uint moved;   // 1: since then
 };
 
 struct RadianceCacheConstants {

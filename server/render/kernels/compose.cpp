@@ -42,12 +42,17 @@ class Composition {
   HWY_INLINE explicit Composition(const ComposeJob& job)
       : job_(job), tables_(job.tables), environment_(job.frame, job.environment) {}
 
-  HWY_INLINE void rows(int first, int last) const {
+  HWY_INLINE void rows(int first, int last) {
+    std::vector<shared::Light> found;
     const int lanes = static_cast<int>(hn::Lanes(d_));
-    for (int y = first; y < last; ++y) {
-      const ViewedRow<D> view(job_.frame, y);
-      for (int x = 0; x < job_.width; x += lanes) {
-        block(view, std::min(x, job_.width - lanes), y);
+    const int step = job_.lights.culls() ? std::max(lanes, 64) : job_.width;
+    for (int left = 0; left < job_.width; left += step) {
+      const int right = std::min(left + step, job_.width);
+      lights_ = job_.lights.of({std::min(left, job_.width - lanes), first, right, last},
+                               job_.motion, found);
+      for (int y = first; y < last; ++y) {
+        const ViewedRow<D> view(job_.frame, y);
+        for (int x = left; x < right; x += lanes) block(view, std::min(x, job_.width - lanes), y);
       }
     }
   }
@@ -135,7 +140,7 @@ class Composition {
                           V occlusion, Terms& terms) const {
     if (enabled(shared::frame_direct)) {
       terms.direct =
-          direct_light(d_, job_.lights, job_.tables.ltc, m, view.world_position(x, view_z), lit);
+          direct_light(d_, lights_, job_.tables.ltc, m, view.world_position(x, view_z), lit);
     }
     if (enabled(shared::frame_indirect)) {
       terms.indirect = select(lit, wide_albedo(m), terms.indirect);
@@ -212,6 +217,7 @@ class Composition {
   const ComposeJob& job_;
   LobeLanes<D> tables_;
   EnvironmentLanes environment_;
+  std::span<const shared::Light> lights_;  // that may reach the pixels
 };
 
 template <class D>

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "render/kernels/common/frame_job.hpp"
+#include "render/kernels/lights/reaching_lights.hpp"
 #include "render/resources/host_tables.hpp"
 
 namespace heliograph::render::kernels {
@@ -23,8 +24,8 @@ struct ComposeConstants {
 };
 
 struct ComposeJob : FrameJob<ComposeBindings, ComposeConstants> {
-  bool layered;                           // materials of the scene have layers
-  std::span<const shared::Light> lights;  // the environment's sun among them
+  bool layered;                  // materials of the scene have layers
+  const ReachingLights& lights;  // the environment's sun among them
   LobeTables tables;
   const Environment& environment;
 };

@@ -229,7 +229,8 @@ SceneView view_scene(const SceneResources& scene, const tracing::SceneTables& ta
           made.layers.data(),
           made.levels.data(),
           reinterpret_cast<const std::uint32_t*>(mapped(scene.texture_heap.texels)),
-          reinterpret_cast<const shared::Vertex*>(mapped(moving.previous_vertices()))};
+          reinterpret_cast<const shared::Vertex*>(mapped(moving.previous_vertices())),
+          view_emissive(moving.emissive())};
 }
 
 RadianceMap view_map(const scene::Environment& environment) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gpu/memory/image.hpp"
+#include "render/resources/emissive/emissive_lights.hpp"
 #include "render/resources/texture_heap.hpp"
 #include "scene/environment.hpp"
 #include "shaders/shared/scene.h"
@@ -111,6 +112,7 @@ struct SceneView {
   const std::uint32_t* levels;
   const std::uint32_t* texels;
   const shared::Vertex* previous_vertices;
+  EmissiveView emissive;
 };
 
 /// `tables` and `moving` are the scene's in the pose of the frame.

@@ -1,11 +1,21 @@
 // What comes back along a ray that gathers indirect light. Include after the cache's buffers.
 #ifndef HELIOGRAPH_GATHERED_LIGHT_GLSL
 #define HELIOGRAPH_GATHERED_LIGHT_GLSL
-#include "lib/scene/hit_material.glsl"
+#include "lib/lighting/emissive_balance.glsl"
+#include "lib/lighting/emissive_lights.glsl"
 #include "lib/lighting/radiance_cache.glsl"
 
 /// Width of a gathering ray's cone, metres per metre.
 const float gathering_spread = 0.25;
+
+/// What the surface sends out by itself, less what shadow rays toward emissive triangles bring. The
+/// ray carries its density.
+vec3 gathered_emission(Ray ray, Hit hit, HitSurface s) {
+  if (!scene_has(scene_emissive) || is_unlit(s)) return own_light(s);
+  if (!enabled(frame_emissive) || !side_shines(s, ray.direction)) return vec3(0.0);
+  return s.emissive * gathered_share(uintBitsToFloat(ray.padding1),
+                                     emissive_density(hit, s, ray.direction));
+}
 
 /// Radiance; `known` is false where the cache has nothing to say.
 vec3 gathered_light(Ray ray, Hit hit, RadianceCacheConstants c, out bool known) {
@@ -14,7 +24,7 @@ vec3 gathered_light(Ray ray, Hit hit, RadianceCacheConstants c, out bool known) 
     return enabled(frame_environment_diffuse) ? environment_radiance(ray.direction) : vec3(0.0);
   }
   HitSurface s = hit_surface(hit, ray.direction, hit.t * gathering_spread);
-  vec3 light = own_light(s);
+  vec3 light = gathered_emission(ray, hit, s);
   if (is_unlit(s)) return light;
   SurfaceMaterial m = material_of(s, ray.direction);
   SeenPlace at = SeenPlace(s.position, s.geometric, dot(s.front, s.geometric) < 0.0);

@@ -6,6 +6,7 @@
 #define HWY_TARGET_INCLUDE "render/kernels/indirect/indirect_rays.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/emissive_choice.hpp"
 #include "render/kernels/simd/random.hpp"
 #include "render/kernels/simd/rays.hpp"
 #include "render/kernels/simd/tiles.hpp"
@@ -55,14 +56,16 @@ class IndirectRays {
     Float u, v;
     directions_.at(as_unsigned(pixels.x), as_unsigned(pixels.y), u, v);
     RayLanes ray;
-    ray.direction = sample_cosine(octahedral_decode(encoded.x, encoded.y), u, v);
+    const Float3 shading = octahedral_decode(encoded.x, encoded.y);
+    ray.direction = sample_cosine(shading, u, v);
     ray.origin = offset_origin(camera_.world_position(pixels, view_z), geometric, view_z);
     ray.t_min = zero();
     ray.t_max = number(1e30f);
     ray.pixel = pack_pixel(pixels);
-    ray.user = numbers(0.0f);
     const Float below = hn::Min(dot(ray.direction, geometric), zero());
     ray.direction = multiply_add(geometric, below * number(-2.0f), ray.direction);
+    const Float density = cosine_density(at_least(dot(ray.direction, shading), 0.0f));
+    ray.user = {zero(), zero(), density};
     return ray;
   }
 

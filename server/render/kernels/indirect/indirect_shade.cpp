@@ -34,7 +34,7 @@ HWY_INLINE void store_light(const RadianceCacheShadeJob& job, const RayLanes& ra
   const std::uint64_t known = mask_bits(gathered.known);
   for_each_lane(hn::AndNot(probes, requested), [&](std::size_t lane) {
     shared::RadianceCell& cell = cell_of(lane);
-    cell.new_indirect = known >> lane & 1 ? values.at(lane) : cell.indirect;
+    cell.new_indirect = known >> lane & 1 ? values.at(lane) : glm::vec3(shared::nothing_gathered);
   });
   if (none(probes)) return;
   const StoredTriples places(

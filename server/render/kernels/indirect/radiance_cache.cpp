@@ -196,8 +196,13 @@ void radiance_cache_light(const RadianceCacheLightJob& job) {
       const vec3 light(std::bit_cast<float>(ray.user), std::bit_cast<float>(ray.padding0),
                        std::bit_cast<float>(ray.padding1));
       if (job.occluded[i] || !std::isfinite(light.x + light.y + light.z)) continue;
-      shared::RadianceCell& cell = job.cells[ray.pixel];
-      if (cell.state == shared::cell_updated) cell.new_direct = light;
+      shared::RadianceCell& cell = job.cells[ray.pixel % shared::cache_cells];
+      if (cell.state != shared::cell_updated) continue;
+      if ((ray.pixel & shared::cache_emissive_ray) == 0) {
+        cell.new_direct = light;
+      } else if (cell.new_indirect.x >= 0.0f) {
+        cell.new_indirect += light;
+      }
     }
   });
 }
@@ -226,11 +231,12 @@ void radiance_cache_blend(const RadianceCacheBlendJob& job) {
       const float later = 2.0f / static_cast<float>(cell.samples + 1);
       const float weight = std::min(std::max(later, constants.least_weight), 1.0f);
       cell.direct = glm::mix(cell.direct, cell.new_direct, weight);
+      if (cell.new_indirect.x < 0.0f) continue;
       cell.indirect = glm::mix(cell.indirect, cell.new_indirect, weight);
     }
   });
-  const std::uint32_t before = (constants.frame_number + 1) % 2;
-  job.keys[shared::cache_counts + before] = job.keys[shared::cache_used_counts + before] = 0;
+  const std::uint32_t next = (constants.frame_number + 1) % shared::cache_counters;
+  job.keys[shared::cache_counts + next] = job.keys[shared::cache_used_counts + next] = 0;
 }
 
 }  // namespace heliograph::render::kernels

@@ -8,6 +8,7 @@
 #include "render/kernels/common/ray_sink.hpp"
 #include "render/kernels/common/tile.hpp"
 #include "render/resources/host_tables.hpp"
+#include "shaders/shared/emissive.h"
 #include "shaders/shared/radiance_cache.h"
 
 /// The radiance cache on all processors: shaders/lib/lighting/radiance_cache.glsl and the passes
@@ -102,10 +103,12 @@ struct RadianceCacheRaysBindings {
   gpu::ReadWriteBuffer<Stage, shared::RadianceCell> cells;
   RaySink<Stage> rays;
   RaySink<Stage> shadows;  // toward lights
+  gpu::ReadBuffer<Stage, shared::EmissivePoint> points;
 };
 struct RadianceCacheRaysJob : FrameJob<RadianceCacheRaysBindings, shared::RadianceCacheConstants> {
   std::span<const shared::Light> lights;
   LobeTables tables;
+  bool samples_emissive;  // whether `points` are those of this frame
 };
 void radiance_cache_rays(const RadianceCacheRaysJob& job);
 

@@ -5,6 +5,7 @@
 #define HWY_TARGET_INCLUDE "render/kernels/indirect/radiance_cache_rays.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/simd/emissive_choice.hpp"
 #include "render/kernels/simd/lights.hpp"
 #include "render/kernels/simd/radiance_cache.hpp"
 #include "render/kernels/simd/random.hpp"
@@ -67,7 +68,7 @@ class CellUpdates {
     shared::RadianceCell& cell = job_.cells[slot];
     cell.priority = 0;
     const std::uint32_t idle = c.frame_number - cell.last_used;
-    const std::uint32_t before = (c.frame_number + 1) % 2;
+    const std::uint32_t before = (c.frame_number + 2) % shared::cache_counters;
     const bool crowded = job_.keys[shared::cache_counts + before] > shared::cache_crowd;
     if (idle > (crowded ? shared::cache_crowd_lifetime : shared::cache_lifetime)) {
       key = 0;
@@ -138,24 +139,70 @@ class CellUpdates {
     ray.t_min = zero();
     ray.t_max = number(1e30f);
     ray.pixel = hn::Load(integer_tag, slots.data());
-    ray.user = numbers(0.0f);
+    ray.user = {zero(), zero(), cosine_density(dot(ray.direction, normal))};
     rays.add(ray, requested);
-    if ((job_.frame.flags & shared::frame_direct) == 0) return;
-    add_shadow_rays(ray, position, normal, load(pick), {load(across), load(down)}, requested,
-                    shadows);
+    const Receivers receivers{position, normal, load(pick), {load(across), load(down)}, requested};
+    if (!job_.samples_emissive) {
+      const LightRays light = light_rays(ray, receivers);
+      return shadows.add(light.ray, light.valid);
+    }
+    add_light_or_emissive(at, ray, receivers, shadows);
   }
 
-  HWY_INLINE void add_shadow_rays(RayLanes ray, const Float3& position, const Float3& normal,
-                                  Float pick, const Float2& point, Mask requested,
-                                  RayBatch& shadows) const {
-    const SurfaceMaterial<Float> m = white_surface(normal);
+  struct Receivers {
+    Float3 position, normal;
+    Float pick;
+    Float2 point;
+    Mask requested;
+  };
+  /// Rays that carry what arrives if nothing is in their way, and its luminance.
+  struct LightRays {
+    RayLanes ray;
+    Float total;
+    Mask valid;
+  };
+
+  /// `ray`: origins, and which cells they belong to.
+  HWY_INLINE LightRays light_rays(const RayLanes& ray, const Receivers& at) const {
+    LightRays made{ray, zero(), hn::Gt(zero(), zero())};
+    if ((job_.frame.flags & shared::frame_direct) == 0) return made;
+    const SurfaceMaterial<Float> m = white_surface(at.normal);
+    Float pick = at.pick;
     const LightChoice light =
-        choose_light(job_.lights, job_.tables.ltc, m, position, requested, pick);
-    const Mask seen = aim(job_.lights, light, m, position, point, pick, requested, ray);
-    if (none(seen)) return;
-    if ((job_.frame.flags & shared::frame_shadows) == 0) ray.t_max = zero();
-    ray.user = light.contribution * (light.total / light.weight);
-    shadows.add(ray, seen);
+        choose_light(job_.lights, job_.tables.ltc, m, at.position, at.requested, pick);
+    made.valid = aim(job_.lights, light, m, at.position, at.point, pick, at.requested, made.ray);
+    if ((job_.frame.flags & shared::frame_shadows) == 0) made.ray.t_max = zero();
+    made.ray.user = light.contribution * (light.total / light.weight);
+    made.total = light.total;
+    return made;
+  }
+
+  /// One of both, in proportion to their light. `first`: of the cells that are due.
+  HWY_INLINE void add_light_or_emissive(std::size_t first, const RayLanes& ray, const Receivers& at,
+                                        RayBatch& shadows) const {
+    HWY_ALIGN std::array<float, hn::MaxLanes(Tag())> start{}, pick{}, which{};
+    for (std::size_t lane = 0; lane < hn::Lanes(tag); ++lane) {
+      const std::uint32_t check = job_.keys[due_[std::min(first + lane, count_ - 1)]];
+      const glm::vec2 numbers = numbers_.at(check, 8);
+      start[lane] = numbers.x, pick[lane] = numbers.y;
+      which[lane] = numbers_.at(check, 9).x;
+    }
+    const LightRays light = light_rays(ray, at);
+    const EmissiveChoice emissive =
+        choose_emissive(job_.points, at.position, at.normal, at.normal, hn::Load(tag, start.data()),
+                        hn::Load(tag, pick.data()));
+    const Float both = light.total + emissive.total;
+    const Mask shines =
+        hn::And(at.requested, hn::Lt(hn::Load(tag, which.data()) * both, emissive.total));
+    RayLanes made = light.ray;
+    made.direction = select(shines, emissive.direction, made.direction);
+    made.t_max = select(shines, emissive.distance * number(0.999f), made.t_max);
+    const Float total = select(shines, emissive.total, light.total);
+    made.user = select(shines, emissive.light, made.user) *
+                (both / select(hn::Gt(total, zero()), total, one()));
+    const Integer mark = integer(static_cast<int>(shared::cache_emissive_ray));
+    made.pixel = hn::Or(made.pixel, hn::IfThenElseZero(integer_mask(shines), mark));
+    shadows.add(made, hn::Or(shines, hn::AndNot(shines, light.valid)));
   }
 
   const RadianceCacheRaysJob& job_;
@@ -188,7 +235,7 @@ void radiance_cache_rays(const RadianceCacheRaysJob& job) {
     alive += counts.alive;
     used += counts.used;
   });
-  const std::uint32_t now = job.constants.frame_number % 2;
+  const std::uint32_t now = job.constants.frame_number % shared::cache_counters;
   job.keys[shared::cache_counts + now] = alive;
   job.keys[shared::cache_used_counts + now] = used;
   job.rays.end();

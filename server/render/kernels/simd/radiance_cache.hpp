@@ -9,6 +9,8 @@
 #endif
 
 #include "render/kernels/indirect/radiance_cache.hpp"
+#include "render/kernels/simd/emissive_choice.hpp"
+#include "render/kernels/simd/emissive_lights.hpp"
 #include "render/kernels/simd/environment.hpp"
 #include "render/kernels/simd/material/hit_material.hpp"
 #include "render/kernels/simd/material/specular_lobe.hpp"
@@ -124,7 +126,7 @@ class GatheredLight {
     const CachedLanes cached = cached_light(cache_, s, hit.t, ray.pixel, lit, touches);
     Float3 sent = (wide_albedo(m) + m.specular_albedo) * (cached.direct + cached.indirect);
     sent = select(unlit, s.base_color, sent);
-    if (enabled(shared::frame_emissive)) sent = sent + s.emissive;
+    if (enabled(shared::frame_emissive)) sent = sent + emission(ray, hit, s, lit);
     if constexpr (Surface::layered) sent = sent * (one() / (one() - s.passing));
     sent = select(is_bad(sent), numbers(0.0f), sent);
     light = select(hit.met, sent, light);
@@ -134,6 +136,19 @@ class GatheredLight {
 
  private:
   bool enabled(std::uint32_t flag) const { return (job_.frame.flags & flag) != 0; }
+
+  /// Less what shadow rays toward emissive triangles bring to `lit` lanes.
+  HWY_INLINE Float3 emission(const RayLanes& ray, const HitLanes& hit, const Surface& s,
+                             Mask lit) const {
+    if (job_.scene.emissive.header->count == 0) return s.emissive;
+    const Float cosine = dot(s.front, ray.direction);
+    const Mask shines = hn::Or(hn::Le(cosine, zero()), s.has(shared::material_double_sided));
+    const Float probability = emissive_probability(job_.scene, hit.instance, hit.triangle);
+    const Float density = probability / at_least(s.area, 1e-30f);
+    const Float sampled = density * hit.t * hit.t / at_least(hn::Abs(cosine), 1e-6f);
+    const Float share = hn::IfThenElseZero(shines, gathered_share(ray.user.z, sampled));
+    return s.emissive * select(lit, share, one());
+  }
 
   const Job& job_;
   const CacheReader& cache_;

@@ -50,7 +50,8 @@ Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbu
       })
       .dispatch(gpu::each_pixel())
       .host([in](const kernels::ComposeJob::Pass& pass) {
-        const auto lights = frame_lights(in.tables.lights, in.constants);
+        const auto all = frame_lights(in.tables.lights, in.constants);
+        const kernels::ReachingLights lights(all, in.constants);
         const bool separate_sun = in.settings.environment.separate_sun;
         kernels::compose({pass, in.constants, kernels::has_layers(in.scene.features), lights,
                           in.lobe_tables(), *in.moving.environment().view(separate_sun).maps.host});

@@ -2,6 +2,7 @@
 
 #include "render/kernels/indirect/radiance_cache.hpp"
 #include "render/passes/formats.hpp"
+#include "render/passes/lights/emissive_points.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/resources/light_table.hpp"
 #include "render/resources/moving_scene.hpp"
@@ -55,23 +56,25 @@ UpdateRays generate(gpu::FramePlan& plan, const FrameInputs& in, const RadianceC
                    tracing::RayKind::hit_shadow)};
   begin_rays(plan, in, "radiance_cache", made.rays);
   begin_rays(plan, in, "radiance_cache.shadows", made.shadows);
-  plan.pass("radiance_cache.rays", in.program(shaders::radiance_cache_rays, in.scene.features))
+  plan.pass("radiance_cache.rays", in.program(shaders::radiance_cache_rays, in.moving.features()))
       .bind<kernels::RadianceCacheRaysBindings>({.keys = cache.keys,
                                                  .cells = cache.cells,
                                                  .rays = ray_sink(made.rays),
-                                                 .shadows = ray_sink(made.shadows)})
+                                                 .shadows = ray_sink(made.shadows),
+                                                 .points = cache.points})
       .constants([in] { return cache_constants(in); })
       .dispatch({shared::cache_cells, 1})
       .host([in](const kernels::RadianceCacheRaysJob::Pass& pass) {
         const auto lights = frame_lights(in.tables.lights, in.constants);
-        kernels::radiance_cache_rays({pass, in.constants, lights, in.lobe_tables()});
+        kernels::radiance_cache_rays(
+            {pass, in.constants, lights, in.lobe_tables(), samples_emissive(in)});
       });
   return made;
 }
 
 void shade(gpu::FramePlan& plan, const FrameInputs& in, const RadianceCache& cache,
            const tracing::RayStream& rays, gpu::BufferRef hits) {
-  plan.pass("radiance_cache.shade", in.program(shaders::radiance_cache_shade, in.scene.features))
+  plan.pass("radiance_cache.shade", in.program(shaders::radiance_cache_shade, in.moving.features()))
       .bind<kernels::RadianceCacheShadeBindings>(
           {.rays = ray_source(rays), .hits = hits, .keys = cache.keys, .cells = cache.cells})
       .constants([in] { return cache_constants(in); })
@@ -107,7 +110,8 @@ RadianceCache update_radiance_cache(gpu::FramePlan& plan, const FrameInputs& in)
       plan.buffer("radiance_cache.keys", sizeof(std::uint32_t) * shared::cache_words, storage,
                   gpu::Memory::device),
       plan.buffer("radiance_cache.cells", sizeof(shared::RadianceCell) * shared::cache_cells,
-                  storage, gpu::Memory::device)};
+                  storage, gpu::Memory::device),
+      draw_emissive_points(plan, in)};
   const UpdateRays update = generate(plan, in, cache);
   const auto hits = plan.buffer("radiance_cache.hits", sizeof(shared::Hit) * update.rays.capacity,
                                 storage, gpu::Memory::device);

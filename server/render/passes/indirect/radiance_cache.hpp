@@ -8,8 +8,9 @@ namespace heliograph::render {
 
 /// Light at places of the world: shaders/shared/radiance_cache.h. Stays from frame to frame.
 struct RadianceCache {
-  gpu::BufferRef keys;   // uint
-  gpu::BufferRef cells;  // shared::RadianceCell
+  gpu::BufferRef keys;    // uint
+  gpu::BufferRef cells;   // shared::RadianceCell
+  gpu::BufferRef points;  // draw_emissive_points(), of this frame
 };
 
 shared::RadianceCacheConstants cache_constants(const FrameInputs& in);

@@ -3,6 +3,7 @@
 #include "render/kernels/indirect/radiance_cache.hpp"
 #include "render/passes/formats.hpp"
 #include "render/passes/indirect/radiance_cache.hpp"
+#include "render/passes/lights/emissive_points.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/sampling/plan_samples.hpp"
 #include "shaders/embedded.hpp"
@@ -36,7 +37,7 @@ void gather(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
   const auto hits = plan.buffer("indirect.hits", sizeof(shared::Hit) * rays.capacity, storage,
                                 gpu::Memory::device);
   in.tracer.trace_closest(plan, "indirect.trace", in.structure, rays, hits);
-  plan.pass("indirect.shade", in.program(shaders::indirect_shade, in.scene.features))
+  plan.pass("indirect.shade", in.program(shaders::indirect_shade, in.moving.features()))
       .bind<kernels::IndirectShadeBindings>({.rays = ray_source(rays),
                                              .hits = hits,
                                              .keys = cache.keys,
@@ -58,6 +59,7 @@ gpu::ImageRef trace_indirect(gpu::FramePlan& plan, const FrameInputs& in, const 
   const auto radiance = plan.image(indirect_buffers.radiance.name, formats::four_floats);
   for (const kernels::Rows rows : ray_strips(plan, plan.extent())) {
     gather(plan, in, gbuffer, cache, planned, radiance, rows);
+    add_emissive_light(plan, in, gbuffer, cache.points, radiance, rows);
   }
   return radiance;
 }

@@ -29,6 +29,13 @@ EmissiveBuffers upload_emissive(const gpu::Device& device, const EmissiveTable& 
                              table_usage)};
 }
 
+EmissiveView view_emissive(const EmissiveBuffers& buffers) {
+  const std::byte* const table = buffers.table.mapped();
+  return {reinterpret_cast<const shared::EmissiveHeader*>(table),
+          reinterpret_cast<const shared::EmissiveTriangle*>(table + sizeof(shared::EmissiveHeader)),
+          reinterpret_cast<const std::uint32_t*>(buffers.first.mapped())};
+}
+
 EmissiveLights::EmissiveLights(const gpu::Device& device, const EmissiveBuffers& shared)
     : device_(device), shared_(shared) {}
 

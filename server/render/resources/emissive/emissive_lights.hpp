@@ -13,6 +13,14 @@ struct EmissiveBuffers {
   gpu::Buffer first;  // EmissiveTable::first
 };
 
+/// The same where the host reaches it: on devices that are processors.
+struct EmissiveView {
+  const shared::EmissiveHeader* header;
+  const shared::EmissiveTriangle* triangles;
+  const std::uint32_t* first;
+};
+EmissiveView view_emissive(const EmissiveBuffers& buffers);
+
 /// A table that never changes.
 EmissiveBuffers upload_emissive(const gpu::Device& device, const EmissiveTable& table);
 

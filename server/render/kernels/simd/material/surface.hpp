@@ -64,6 +64,7 @@ struct SurfaceLanes {
   Float3 geometric;  // of the triangle, likewise
   Float3 front;      // of the triangle's front face, by its winding
   Float3 local;      // position, mesh space
+  Float area;        // of the triangle, world, square metres
   Float3 base_color;
   Float3 emissive;  // linear radiance
   Float alpha, alpha_cutoff, metallic, roughness, occlusion;
@@ -358,6 +359,7 @@ HWY_INLINE Surface surface_at(const SceneView& scene, const HitRecords& records,
       triangle.between(turned(triangle.a()), turned(triangle.b()), turned(triangle.c())));
   const Float3 across = cross(world.direction(b - a), world.direction(c - a)) * handedness;
   const Float area = hn::Sqrt(dot(across, across));
+  s.area = area * number(0.5f);
   const Mask flat = hn::Le(area, zero());
   s.front = select(flat, vertex_normal, across * hn::Div(one(), select(flat, one(), area)));
   const Float cosine = dot(s.front, direction);
