@@ -225,7 +225,7 @@ TEST(Indirect, FollowsAWallThatMoves) {
     }
   };
   const auto indirect = [&] {
-    return mean_of(rig.capture("indirect.history"), {0, 0}, {64, 48}).x;
+    return mean_of(rig.capture("indirect.history"), {0, 0}, {32, 24}).x;  // of half the size
   };
   move(0, 0);
   wait(64);

@@ -20,7 +20,7 @@ shared::RadianceCacheConstants cache_constants(const FrameInputs& in) {
   made.frame_number = in.constants.sample_index;
   // Buffers are new where the sequences begin; otherwise light has changed, and places have not.
   made.reset = in.constants.history_invalid != 0 && in.constants.sample_index == 0;
-  made.forget = in.constants.history_invalid;
+  made.forget = in.constants.history_invalid != 0 || in.scene_motion.any();
   made.cell_angle = settings.cell_angle;
   made.least_size = size / 2048.0f;
   made.cell_fraction = 0.5f;
