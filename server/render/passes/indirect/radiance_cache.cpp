@@ -31,7 +31,8 @@ shared::RadianceCacheConstants cache_constants(const FrameInputs& in) {
   const SceneMotion& motion = in.scene_motion;
   const bool young = in.clock.is_young() || motion.still_light_frames < FrameClock::young_frames;
   const bool moving = !motion.settled();
-  const float factor = young || moving || in.clock.samples > 0 ? 4.0f : 1.0f;
+  const bool rests = in.clock.samples > 0 || (moving && !motion.any());
+  const float factor = young || rests ? 8.0f : moving ? 4.0f : 1.0f;
   made.most_samples = static_cast<std::uint32_t>(settings.most_samples);
   if (young || moving) {
     made.most_samples = std::min(made.most_samples, shared::cache_new_samples);
