@@ -10,10 +10,8 @@ from harness.viewer import FLAG_DISCONTINUITY, Viewer
 class Histories(ServerTestCase):
     @classmethod
     def setUpClass(cls):
-        # One frame for every change, so that each is seen; ambient occlusion, so that the history of
-        # visibility goes on without shadows.
-        cls.server = Server("--scene", "mirror", "--set", "accumulation.max_samples=1",
-                            "--set", "indirect.enabled=false")
+        # One frame for every change, so that each is seen.
+        cls.server = Server("--scene", "mirror", "--set", "accumulation.max_samples=1")
 
     def history_lengths(self):
         """How many lengths of history there are in the image: surfaces that have just been
@@ -35,6 +33,8 @@ class Histories(ServerTestCase):
         self.assertLessEqual(self.history_lengths(), 2, f"{what}: the history was not reset")
 
     def test_switching_a_light_resets_the_history(self):
+        # With ambient occlusion the history of visibility goes on without shadows.
+        self.server.call("settings.patch", {"patch": {"indirect": {"enabled": False}}})
         for group, name in (("lighting", "direct"), ("lighting", "environment_diffuse"),
                             ("lighting", "environment_specular"), ("lighting", "emissive"),
                             ("shadows", "enabled"), ("ambient", "occlusion")):
