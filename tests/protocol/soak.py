@@ -73,8 +73,9 @@ async def drive(viewer, state):
         await asyncio.sleep(0.5)
 
 
-async def come_and_go(server):
-    while True:
+async def come_and_go(server, state):
+    # Until told to end: wait_for() swallows a cancellation that comes together with a frame.
+    while not state["ending"]:
         visitor = Viewer(server)
         await visitor.__aenter__()
         await visitor.next_frame(timeout=60)
@@ -108,7 +109,7 @@ async def soak(server, seconds, report=print):
         tasks = [asyncio.create_task(observer.run()) for observer in observers]
         working = [asyncio.create_task(drive(driver, state)),
                    asyncio.create_task(make_and_close(server, state))]
-        tasks += [*working, asyncio.create_task(come_and_go(server))]
+        tasks += [*working, asyncio.create_task(come_and_go(server, state))]
         begin = time.monotonic()
         while time.monotonic() < begin + seconds:
             await asyncio.sleep(min(10, seconds / 8))
