@@ -24,8 +24,8 @@ constexpr std::uint32_t samples = 16;  // per pixel and block
 constexpr float roughnesses[] = {0.0f, 0.1f, 0.2f, 0.3f, 0.4f, 0.6f, 1.0f};
 constexpr float angles[] = {0.0f, 2.0f, 6.0f, 10.0f};  // degrees
 
-/// The hybrid without denoising and without indirect light. The background is equal in both images and is hidden, because it
-/// would dilute differences.
+/// The hybrid without denoising and without indirect light. The background is equal in both images
+/// and is hidden, because it would dilute differences.
 protocol::Settings undenoised(float angle) {
   protocol::Settings settings;
   settings.indirect.enabled = false;
