@@ -42,15 +42,30 @@ constexpr std::array<Description, 6> descriptions = {{
 }};
 
 // Every preset resets these groups and settings before it sets its own.
-constexpr std::array denoiser = std::to_array<std::string_view>(
-    {"reprojection",          "shadow_temporal",        "shadow_blur",
-     "specular_temporal",     "specular_blur",          "reinhard",
-     "specular.enabled",      "specular.hit_shading",   "specular.max_roughness",
-     "specular.fade_start",   "specular.fade_end",      "specular.fade_fraction",
-     "specular.fade_to",      "specular.reuse_shadows", "sampling.visibility",
-     "sampling.specular",     "sampling.full_frames",   "sampling.floor",
-     "accumulation.by_noise", "antialiasing.temporal",  "indirect",
-     "indirect_temporal",     "indirect_blur"});
+constexpr std::array denoiser = std::to_array<std::string_view>({"reprojection",
+                                                                 "shadow_temporal",
+                                                                 "shadow_blur",
+                                                                 "specular_temporal",
+                                                                 "specular_blur",
+                                                                 "reinhard",
+                                                                 "specular.enabled",
+                                                                 "specular.hit_shading",
+                                                                 "specular.max_roughness",
+                                                                 "specular.fade_start",
+                                                                 "specular.fade_end",
+                                                                 "specular.fade_fraction",
+                                                                 "specular.fade_to",
+                                                                 "specular.reuse_shadows",
+                                                                 "sampling.visibility",
+                                                                 "sampling.specular",
+                                                                 "sampling.full_frames",
+                                                                 "sampling.floor",
+                                                                 "accumulation.by_noise",
+                                                                 "accumulation.filter",
+                                                                 "antialiasing.temporal",
+                                                                 "indirect",
+                                                                 "indirect_temporal",
+                                                                 "indirect_blur"});
 
 /// A patch that resets the denoiser, flattened: null at "/group/name" of each setting.
 json flat_reset() {

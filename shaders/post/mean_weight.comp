@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
-// The weight of the accumulated mean in the frame that is shown: 1 - v / max(d, v), where v is the
+// The weight of the filtered mean in the frame that is shown: 1 - v / max(d, v), where v is the
 // mean's variance and d its squared distance from the denoised frame, both over 5x5 pixels;
 // averaged over 3x3.
 #include "lib/frame.glsl"
@@ -9,13 +9,13 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "shared/exposure.h"
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D radiance;
-layout(set = 1, binding = 1, rgba32f) readonly uniform image2D accumulated;  // a: variance
+layout(set = 1, binding = 1, rgba16f) readonly uniform image2D filtered;  // a: deviation
 layout(set = 1, binding = 2, std140) uniform ExposureBlock { ExposureState exposure; };
 layout(set = 1, binding = 3, r32f) writeonly uniform image2D mean_weight;
 layout(push_constant) uniform Constants {
-  uvec2 shown;           // size of all images, pixels
-  float share;           // the weight of every pixel, where it does not follow from noise
-  float variance_scale;  // of one sample's variance to the mean's; 0: `share` is the weight
+  uvec2 shown;   // size of all images, pixels
+  float share;   // the weight of every pixel, where it does not follow from noise
+  uint by_noise; // 0: `share` is the weight
 };
 
 const int window = 2;  // pixels on either side that are averaged
@@ -29,17 +29,17 @@ shared float weights[weights_side * weights_side];
 /// Both in units of the exposed image, in which bright pixels differ less.
 vec2 compared(ivec2 pixel) {
   float seen = luminance(imageLoad(radiance, pixel).rgb);
-  vec4 mean = imageLoad(accumulated, pixel);
+  vec4 mean = imageLoad(filtered, pixel);
   float averaged = luminance(mean.rgb);
   float compression = 1.0 / (1.0 + 0.5 * exposure.factor * (seen + averaged));
   float apart = averaged - seen;
-  return vec2(mean.a * variance_scale, apart * apart) * compression * compression;
+  return vec2(mean.a * mean.a, apart * apart) * compression * compression;
 }
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   bool inside = all(lessThan(uvec2(pixel), shown));
-  if (variance_scale == 0.0) {
+  if (by_noise == 0u) {
     if (inside) imageStore(mean_weight, pixel, vec4(share));
     return;
   }

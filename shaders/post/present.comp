@@ -9,8 +9,8 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "shared/exposure.h"
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D radiance;
-layout(set = 1, binding = 1, rgba32f) readonly uniform image2D accumulated;
-layout(set = 1, binding = 2, r32f) readonly uniform image2D mean_weight;  // of `accumulated`
+layout(set = 1, binding = 1, rgba16f) readonly uniform image2D mean;
+layout(set = 1, binding = 2, r32f) readonly uniform image2D mean_weight;  // of `mean`
 layout(set = 1, binding = 3, std140) uniform ExposureBlock { ExposureState exposure; };
 layout(set = 1, binding = 4, rgba8) writeonly uniform image2D shown;
 layout(push_constant) uniform Constants {
@@ -33,7 +33,7 @@ void main() {
   ivec2 nearest = ivec2((2u * uvec2(pixel) + 1u) * drawn / (2u * shown_size));
   float mean_share = imageLoad(mean_weight, pixel).r;
   vec3 color = mean_share < 1.0 ? imageLoad(radiance, nearest).rgb : vec3(0.0);
-  if (mean_share > 0.0) color = mix(color, imageLoad(accumulated, pixel).rgb, mean_share);
+  if (mean_share > 0.0) color = mix(color, imageLoad(mean, pixel).rgb, mean_share);
   color = max(color, 0.0) * exposure.factor;
   vec3 encoded = srgb_encode(tone_map(color));
   // The same noise in every frame, so that a converged frame does not change.

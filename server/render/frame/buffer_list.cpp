@@ -18,6 +18,7 @@
 #include "render/passes/gbuffer/gbuffer.hpp"
 #include "render/passes/indirect/trace_indirect.hpp"
 #include "render/passes/post/accumulate.hpp"
+#include "render/passes/post/filter_mean.hpp"
 #include "render/passes/post/mean_weight.hpp"
 #include "render/passes/post/present.hpp"
 #include "render/passes/post/temporal_antialias.hpp"
@@ -46,15 +47,15 @@ std::vector<BufferDescription> joined(const Tables&... tables) {
 /// Every buffer that a pass may write, in the order of the frame; which of them a frame has follows
 /// from settings and scene.
 const std::vector<BufferDescription>& all_buffers() {
-  static const std::vector<BufferDescription> buffers =
-      joined(present_buffers, gbuffer_buffers, reproject_buffers, sampling_plan_buffers,
-             visibility_buffers, specular_buffers, denoise_visibility_buffers,
-             visibility_temporal_buffers, half_visibility_buffers, visibility_half_atrous_buffers,
-             visibility_atrous_buffers, denoise_specular_buffers, specular_temporal_buffers,
-             specular_atrous_buffers, indirect_buffers, indirect_half_buffers,
-             indirect_reproject_buffers, indirect_temporal_buffers, indirect_atrous_buffers,
-             skybox_buffers, compose_buffers, blended_buffers, reference_buffers,
-             accumulate_buffers, temporal_antialias_buffers, mean_weight_buffers);
+  static const std::vector<BufferDescription> buffers = joined(
+      present_buffers, gbuffer_buffers, reproject_buffers, sampling_plan_buffers,
+      visibility_buffers, specular_buffers, denoise_visibility_buffers, visibility_temporal_buffers,
+      half_visibility_buffers, visibility_half_atrous_buffers, visibility_atrous_buffers,
+      denoise_specular_buffers, specular_temporal_buffers, specular_atrous_buffers,
+      indirect_buffers, indirect_half_buffers, indirect_reproject_buffers,
+      indirect_temporal_buffers, indirect_atrous_buffers, skybox_buffers, compose_buffers,
+      blended_buffers, reference_buffers, accumulate_buffers, temporal_antialias_buffers,
+      filter_mean_buffers, mean_weight_buffers);
   return buffers;
 }
 

@@ -21,6 +21,7 @@ CompiledFrame::CompiledFrame(const Engine::Parts& parts, const FrameInputs& in,
   outputs = declare_frame(plan, inputs);
   plan.read_back(outputs.output);
   plan.keep(outputs.radiance);
+  plan.keep(outputs.mean);
   plan.keep(outputs.mean_weight);
   plan.keep_images(keeps_buffers);
   plan.compile();

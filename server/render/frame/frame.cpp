@@ -10,6 +10,7 @@
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
 #include "render/passes/indirect/trace_indirect.hpp"
 #include "render/passes/post/accumulate.hpp"
+#include "render/passes/post/filter_mean.hpp"
 #include "render/passes/post/mean_weight.hpp"
 #include "render/passes/post/present.hpp"
 #include "render/passes/post/temporal_antialias.hpp"
@@ -76,14 +77,21 @@ DenoisedSignals denoise(gpu::FramePlan& plan, const FrameInputs& in, const GBuff
   return denoised;
 }
 
+/// Blends the frame with the mean of its samples.
+FrameOutputs show(gpu::FramePlan& plan, const FrameInputs& in, const gpu::History& accumulated,
+                  const Exposure& exposure, gpu::ImageRef radiance) {
+  const gpu::ImageRef mean = filter_mean(plan, in, exposure, radiance, accumulated.current);
+  const gpu::ImageRef weight = weigh_mean(plan, in, exposure, radiance, mean);
+  const gpu::ImageRef output = present(plan, in, exposure, radiance, mean, weight);
+  return {accumulated, exposure, radiance, mean, weight, output};
+}
+
 /// The path traced ground truth alone.
 FrameOutputs declare_reference(gpu::FramePlan& plan, const FrameInputs& in) {
   const gpu::ImageRef sample = trace_reference(plan, in);
   const gpu::History accumulated = accumulate(plan, in, sample);
   const Exposure exposure = expose(plan, in, sample, accumulated.current);
-  const gpu::ImageRef weight = weigh_mean(plan, in, exposure, sample, accumulated.current);
-  return {accumulated, exposure, sample, weight,
-          present(plan, in, exposure, sample, accumulated.current, weight)};
+  return show(plan, in, accumulated, exposure, sample);
 }
 
 }  // namespace
@@ -134,9 +142,7 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
       accumulate(plan, in, traces_reference ? trace_reference(plan, in) : composed.noisy);
   const Exposure exposure = expose(plan, in, composed.hdr, accumulated.current);
   const gpu::ImageRef resolved = temporal_antialias(plan, in, visible, exposure, composed.hdr);
-  const gpu::ImageRef weight = weigh_mean(plan, in, exposure, resolved, accumulated.current);
-  const gpu::ImageRef output = present(plan, in, exposure, resolved, accumulated.current, weight);
-  return {accumulated, exposure, resolved, weight, output};
+  return show(plan, in, accumulated, exposure, resolved);
 }
 
 }  // namespace heliograph::render

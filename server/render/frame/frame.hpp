@@ -11,7 +11,8 @@ struct FrameOutputs {
   gpu::History accumulated;  // linear radiance
   Exposure exposure;
   gpu::ImageRef radiance;     // of the frame alone, as present() reads it
-  gpu::ImageRef mean_weight;  // of what is accumulated in what is shown
+  gpu::ImageRef mean;         // what is accumulated, filtered
+  gpu::ImageRef mean_weight;  // of the latter in what is shown
   gpu::ImageRef output;       // sRGB, RGBA8
 };
 

@@ -41,7 +41,7 @@ FloatImage shown_radiance(const CompiledFrame& compiled) {
     return read_image(image, drawn);
   };
   FloatImage radiance = read(compiled.outputs.radiance);
-  FloatImage mean = read(compiled.outputs.accumulated.current);
+  FloatImage mean = read(compiled.outputs.mean);
   // Frames that are reconstructed from smaller ones show none of the mean, which is as small.
   if (mean.rgba.size() != radiance.rgba.size()) mean = radiance;
   mix(radiance, mean, read(compiled.outputs.mean_weight));
@@ -59,7 +59,7 @@ std::vector<BufferValue> inspect_buffers(const CompiledFrame& compiled, const Vi
         return read_texel(image, pixel.x, pixel.y);
       };
       FloatImage value = read(compiled.outputs.radiance);
-      mix(value, read(compiled.outputs.accumulated.current), read(compiled.outputs.mean_weight));
+      mix(value, read(compiled.outputs.mean), read(compiled.outputs.mean_weight));
       values.push_back({buffer.name, std::move(value.rgba), {}});
       continue;
     }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "render/passes/post/filter_mean.hpp"
 #include "render/passes/post/mean_weight.hpp"
 #include "tests/gpu/support/kernel_comparison.hpp"
 
@@ -15,9 +16,10 @@ class WeightComparison {
     const auto radiance = random.four("radiance", glm::vec4(0), glm::vec4(2));
     const auto mean = random.four("mean", glm::vec4(0), glm::vec4(2, 2, 2, 4));
     const auto exposure = render::expose(rig_.plan(), rig_.inputs(), radiance, mean);
+    const auto filtered = render::filter_mean(rig_.plan(), rig_.inputs(), exposure, radiance, mean);
     const auto run = [&](bool host) {
       return render::weigh_mean(rig_.plan(), with_host_kernels(rig_, host), exposure, radiance,
-                                mean);
+                                filtered);
     };
     shader_ = run(false);
     host_ = run(true);

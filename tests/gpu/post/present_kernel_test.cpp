@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "render/kernels/post/present.hpp"
+#include "render/passes/post/filter_mean.hpp"
 #include "render/passes/post/mean_weight.hpp"
 #include "render/passes/post/present.hpp"
 #include "tests/gpu/support/kernel_comparison.hpp"
@@ -28,10 +29,12 @@ class KernelComparison {
     const auto radiance = random.four("radiance", glm::vec4(-0.1f), glm::vec4(2));
     const auto mean = random.four("mean", glm::vec4(0), glm::vec4(12));
     const auto exposure = render::expose(rig_.plan(), rig_.inputs(), radiance, mean);
-    const auto weight = render::weigh_mean(rig_.plan(), rig_.inputs(), exposure, radiance, mean);
+    const auto filtered = render::filter_mean(rig_.plan(), rig_.inputs(), exposure, radiance, mean);
+    const auto weight =
+        render::weigh_mean(rig_.plan(), rig_.inputs(), exposure, radiance, filtered);
     const auto run = [&](bool host) {
-      return render::present(rig_.plan(), with_host_kernels(rig_, host), exposure, radiance, mean,
-                             weight);
+      return render::present(rig_.plan(), with_host_kernels(rig_, host), exposure, radiance,
+                             filtered, weight);
     };
     shader_ = run(false);
     host_ = run(true);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "render/passes/post/filter_mean.hpp"
 #include "render/passes/post/mean_weight.hpp"
 #include "tests/support/frame_rig.hpp"
 
@@ -24,9 +25,9 @@ class PresentTest : public testing::Test {
     const auto image = rig.input("radiance", VK_FORMAT_R32G32B32A32_SFLOAT,
                                  std::vector(extent.width * extent.height, glm::vec4(radiance, 1)));
     const auto exposure = render::expose(rig.plan(), rig.inputs(), image, image);
-    const auto weight = render::weigh_mean(rig.plan(), rig.inputs(), exposure, image, image);
-    const auto presented =
-        render::present(rig.plan(), rig.inputs(), exposure, image, image, weight);
+    const auto mean = render::filter_mean(rig.plan(), rig.inputs(), exposure, image, image);
+    const auto weight = render::weigh_mean(rig.plan(), rig.inputs(), exposure, image, mean);
+    const auto presented = render::present(rig.plan(), rig.inputs(), exposure, image, mean, weight);
     rig.run();
     const render::FloatImage first = rig.read(presented);
     rig.run();
@@ -82,8 +83,9 @@ TEST_F(PresentTest, BlendsDenoisedAndAccumulatedBySampleCount) {
   };
   const auto frame = flat("frame", 0.9f), average = flat("mean", 0.1f);
   const auto exposure = render::expose(rig.plan(), rig.inputs(), frame, average);
-  const auto weight = render::weigh_mean(rig.plan(), rig.inputs(), exposure, frame, average);
-  const auto image = render::present(rig.plan(), rig.inputs(), exposure, frame, average, weight);
+  const auto filtered = render::filter_mean(rig.plan(), rig.inputs(), exposure, frame, average);
+  const auto weight = render::weigh_mean(rig.plan(), rig.inputs(), exposure, frame, filtered);
+  const auto image = render::present(rig.plan(), rig.inputs(), exposure, frame, filtered, weight);
   for (const auto& [samples, expected] :
        {std::pair(0u, 0.9), {8u, 0.5}, {24u, 0.3}, {8000u, 0.1008}}) {
     rig.set_accumulated(samples);

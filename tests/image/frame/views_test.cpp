@@ -85,7 +85,8 @@ TEST_F(Views, EveryBufferIsListedCapturedAndNotBlank) {
                           buffer.name == "indirect.history_length.rectified" ||
                           buffer.name == "indirect.half.surface" ||
                           buffer.name == "sampling.plan.ambient" ||
-                          buffer.name == "ambient.visibility" || buffer.name == "mean_weight";
+                          buffer.name == "ambient.visibility" || buffer.name == "mean_weight" ||
+                          buffer.name == "mean.filtered";
     EXPECT_EQ(differs, !is_black) << buffer.name;
   }
 }

@@ -70,7 +70,7 @@ bool is_of_the_denoiser(const SettingDescriptor& setting) {
       "specular.fade_start",   "specular.fade_end",      "specular.fade_fraction",
       "specular.fade_to",      "specular.reuse_shadows", "sampling.visibility",
       "sampling.specular",     "sampling.full_frames",   "sampling.floor",
-      "accumulation.by_noise", "antialiasing.temporal"};
+      "accumulation.by_noise", "accumulation.filter",    "antialiasing.temporal"};
   return groups.contains(setting.group) || paths.contains(setting.path);
 }
 

@@ -52,23 +52,19 @@ class MeanWeighing {
     const int lanes = static_cast<int>(hn::Lanes(d_));
     for (int x = 0; x < width_; x += lanes) work(std::min(x, width_ - lanes));
   }
-  HWY_INLINE Quad<V> load(const gpu::HostView& image, int x, int y) const {
-    return load4(d_, row_of<const float>(image, y) + 4 * x);
-  }
-
   /// Both in units of the exposed image, in which bright pixels differ less.
   HWY_INLINE void compare(const BandScratch& pixels, int y) const {
     const int from = std::clamp(y, 0, height_ - 1);
     const V half_factor = set(0.5f * job_.exposure->factor), one = set(1.0f);
     each_block([&](int x) HWY_ATTR {
-      const Quad<V> frame = load(job_.radiance, x, from), mean = load(job_.mean, x, from);
+      const Quad<V> frame = load4(d_, row_of<const float>(job_.radiance, from) + 4 * x);
+      const Quad<V> mean = load_half4(d_, row_of<const std::uint32_t>(job_.mean, from) + 2 * x);
       const V shown = luminance(Triple<V>{frame.x, frame.y, frame.z});
       const V averaged = luminance(Triple<V>{mean.x, mean.y, mean.z});
       const V compression = one / hn::MulAdd(shown + averaged, half_factor, one);
       const V unit = compression * compression;
       const V apart = averaged - shown;
-      hn::StoreU(mean.w * unit * set(job_.constants.variance_scale), d_,
-                 pixels.row(variance, y) + x);
+      hn::StoreU(mean.w * mean.w * unit, d_, pixels.row(variance, y) + x);
       hn::StoreU(apart * apart * unit, d_, pixels.row(distance, y) + x);
     });
     pixels.extend(variance, y);
@@ -129,9 +125,9 @@ namespace heliograph::render::kernels {
 HWY_EXPORT(weigh_rows);
 
 void mean_weight(const MeanWeightJob& job) {
-  const auto& [shown, share, variance_scale] = job.constants;
+  const auto& [shown, share, by_noise] = job.constants;
   const auto width = static_cast<int>(shown.x), height = static_cast<int>(shown.y);
-  if (variance_scale == 0.0f) {
+  if (by_noise == 0) {
     for (int y = 0; y < height; ++y) {
       std::fill_n(job.weight.row<float>(static_cast<std::uint32_t>(y)), width, share);
     }

@@ -8,14 +8,15 @@ namespace heliograph::render::kernels {
 /// shaders/post/mean_weight.comp
 template <class Stage>
 struct MeanWeightBindings {
-  gpu::Read<Stage> radiance, mean;  // rgba32f; a of the mean: variance of one sample's luminance
+  gpu::Read<Stage> radiance;  // rgba32f
+  gpu::Read<Stage> mean;      // rgba16f, as filter_mean() leaves it
   gpu::ReadBuffer<Stage, shared::ExposureState> exposure;
   gpu::Write<Stage> weight;  // r32f
 };
 struct MeanWeightConstants {
-  glm::uvec2 shown;      // size of all images, pixels
-  float share;           // the weight of every pixel, where it does not follow from noise
-  float variance_scale;  // of one sample's variance to the mean's; 0: `share` is the weight
+  glm::uvec2 shown;        // size of all images, pixels
+  float share;             // the weight of every pixel, where it does not follow from noise
+  std::uint32_t by_noise;  // 0: `share` is the weight
 };
 using MeanWeightJob = gpu::HostPass<MeanWeightBindings, MeanWeightConstants>;
 

@@ -39,6 +39,10 @@ class Presentation {
     return {t.x, t.y, t.z};
   }
 
+  HWY_INLINE Triple<V> mean_at(int x, int y) const {
+    return load_half3(d_, row_of<const std::uint32_t>(job_.mean, y) + 2 * x);
+  }
+
   /// Of the nearest pixels that were drawn.
   HWY_INLINE Triple<V> nearest(int x, int y) const {
     const glm::uvec2 shown = job_.constants.shown, drawn = job_.constants.drawn;
@@ -60,11 +64,11 @@ class Presentation {
   HWY_INLINE Triple<V> radiance(int x, int y) const {
     const V weight = hn::LoadU(d_, row_of<const float>(job_.mean_weight, y) + x);
     const auto none = hn::Le(weight, hn::Zero(d_)), all = hn::Ge(weight, set(1.0f));
-    if (hn::AllTrue(d_, all)) return load(job_.accumulated, x, y);
+    if (hn::AllTrue(d_, all)) return mean_at(x, y);
     const Triple<V> frame = nearest(x, y);
     if (hn::AllTrue(d_, none)) return frame;
     // What has no weight may be no number.
-    const Triple<V> mean = load(job_.accumulated, x, y);
+    const Triple<V> mean = mean_at(x, y);
     return select(all, mean, select(none, frame, mix(frame, mean, weight)));
   }
 

@@ -8,8 +8,9 @@ namespace heliograph::render::kernels {
 /// shaders/post/present.comp
 template <class Stage>
 struct PresentBindings {
-  gpu::Read<Stage> radiance, accumulated;  // rgba32f
-  gpu::Read<Stage> mean_weight;            // r32f: of `accumulated`, 0..1
+  gpu::Read<Stage> radiance;     // rgba32f
+  gpu::Read<Stage> mean;         // rgba16f, as filter_mean() leaves it
+  gpu::Read<Stage> mean_weight;  // r32f: of `mean`, 0..1
   gpu::ReadBuffer<Stage, shared::ExposureState> exposure;
   gpu::Write<Stage> output;  // rgba8
 };

@@ -283,6 +283,30 @@ HWY_INLINE Triple<V> load_half3(D d, const std::uint32_t* from) {
   return {half_float(d, xy), half_float(d, hn::ShiftRight<16>(xy)), half_float(d, zw)};
 }
 
+/// Four halves of texels side by side.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Quad<V> load_half4(D d, const std::uint32_t* from) {
+  const hn::RebindToUnsigned<D> du;
+  hn::Vec<decltype(du)> xy, zw;
+  hn::LoadInterleaved2(du, from, xy, zw);
+  return {half_float(d, xy), half_float(d, hn::ShiftRight<16>(xy)), half_float(d, zw),
+          half_float(d, hn::ShiftRight<16>(zw))};
+}
+
+/// Rounds to the nearest halves; values must be at most 65504.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE void store_half4(D, const Quad<V>& t, std::uint32_t* to) {
+  const hn::RebindToUnsigned<D> du;
+  const hn::Rebind<hwy::float16_t, D> halves;
+  const hn::Rebind<std::uint16_t, D> words;
+  const auto word = [&](V v) HWY_ATTR {
+    return hn::PromoteTo(du, hn::BitCast(words, hn::DemoteTo(halves, v)));
+  };
+  const auto xy = hn::Or(word(t.x), hn::ShiftLeft<16>(word(t.y)));
+  const auto zw = hn::Or(word(t.z), hn::ShiftLeft<16>(word(t.w)));
+  hn::StoreInterleaved2(xy, zw, du, to);
+}
+
 /// Lanes at or right of `start` of those that begin at `x`: the last block of a row reaches back
 /// over pixels that are done.
 template <class D>

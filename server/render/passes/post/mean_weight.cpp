@@ -20,24 +20,6 @@ bool shows_mean_alone(const protocol::Settings& settings) {
          settings.accumulation.blend_samples == 0;
 }
 
-/// How much larger than estimated the variance of a mean of few samples is taken to be: rare bright
-/// samples are missing in most of the estimates. StaticView.NeverGetsWorse pins it.
-constexpr float few_samples = 2.0f;
-
-kernels::MeanWeightConstants weight_constants(const FrameInputs& in) {
-  kernels::MeanWeightConstants constants{size_of(in.shown), mean_share(in), 0.0f};
-  const protocol::Settings& settings = in.settings;
-  if (in.is_reduced() || shows_mean_alone(settings) || !settings.accumulation.by_noise) {
-    return constants;
-  }
-  constants.share = 0.0f;
-  const std::uint32_t samples = samples_of_mean(in);
-  if (samples < 2) return constants;
-  const float fewer = 1.0f / static_cast<float>(samples - 1);
-  constants.variance_scale = fewer * (1.0f + few_samples * fewer);
-  return constants;
-}
-
 }  // namespace
 
 float mean_share(const FrameInputs& in) {
@@ -48,6 +30,14 @@ float mean_share(const FrameInputs& in) {
   return samples / (samples + static_cast<float>(in.settings.accumulation.blend_samples));
 }
 
+bool weighs_by_noise(const FrameInputs& in) {
+  return !in.is_reduced() && !shows_mean_alone(in.settings) && in.settings.accumulation.by_noise;
+}
+
+bool weighs_mean(const FrameInputs& in) {
+  return weighs_by_noise(in) ? samples_of_mean(in) >= 2 : mean_share(in) > 0.0f;
+}
+
 gpu::ImageRef weigh_mean(gpu::FramePlan& plan, const FrameInputs& in, const Exposure& exposure,
                          gpu::ImageRef radiance, gpu::ImageRef mean) {
   const auto weight =
@@ -55,7 +45,13 @@ gpu::ImageRef weigh_mean(gpu::FramePlan& plan, const FrameInputs& in, const Expo
   plan.pass("mean_weight", in.program(shaders::mean_weight))
       .bind<kernels::MeanWeightBindings>(
           {.radiance = radiance, .mean = mean, .exposure = exposure.state, .weight = weight})
-      .constants([in] { return weight_constants(in); })
+      .constants([in] {
+        const bool by_noise = weighs_by_noise(in);
+        // One sample tells nothing of its noise.
+        const bool compared = by_noise && samples_of_mean(in) >= 2;
+        return kernels::MeanWeightConstants{size_of(in.shown), by_noise ? 0.0f : mean_share(in),
+                                            compared};
+      })
       .dispatch(in.shown)
       .host(kernels::mean_weight);
   return weight;

@@ -12,7 +12,7 @@ gpu::ImageRef present(gpu::FramePlan& plan, const FrameInputs& in, const Exposur
       plan.image(present_buffers.output.name, VK_FORMAT_R8G8B8A8_UNORM, 0, in.shown);
   plan.pass("present", in.program(shaders::present))
       .bind<kernels::PresentBindings>({.radiance = radiance,
-                                       .accumulated = mean,
+                                       .mean = mean,
                                        .mean_weight = mean_weight,
                                        .exposure = exposure.state,
                                        .output = output})

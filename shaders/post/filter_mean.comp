@@ -1,0 +1,112 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 8, local_size_y = 8) in;
+// Filters the accumulated mean of a static view by its own noise: non-local means (Buades et al.
+// 2005) of its difference from the denoised frame, with the variance that its samples tell
+// (Rousselle et al. 2012). Where patches of 3x3 pixels differ by no more than their noise, they
+// weigh alike. Weights are symmetric, so that rare bright samples are spread and not lost.
+#include "lib/frame.glsl"
+#include "lib/lighting/lights.glsl"
+#include "shared/exposure.h"
+
+layout(set = 1, binding = 0, rgba32f) readonly uniform image2D radiance;
+layout(set = 1, binding = 1, rgba32f) readonly uniform image2D accumulated;  // a: variance
+layout(set = 1, binding = 2, std140) uniform ExposureBlock { ExposureState exposure; };
+layout(set = 1, binding = 3, rgba16f) writeonly uniform image2D filtered;
+layout(push_constant) uniform Constants {
+  uvec2 shown;           // size of all images, pixels
+  float variance_scale;  // of one sample's variance to the mean's
+  float noise_scale;     // of the filtered mean's variance, as its weights tell it; 0: only a copy
+};
+
+const int window = 3;  // pixels on either side that are averaged
+const int patch_reach = 1;
+const int reach = window + patch_reach;
+const int side = 8 + 2 * reach;
+const float least_noise = 1e-9;      // of exposed radiance
+const float guide_weight = 75.0;     // of squared differences of the denoised frame
+const float greatest = 65504.0;      // of half floats
+
+shared vec4 differences[side * side];  // of exposed radiance; a: variance of its luminance
+shared vec2 luminances[side * side];   // luminance of the difference, and of the denoised frame
+
+/// From radiance to the exposed image, in which bright pixels differ less.
+float unit_of(vec3 seen, vec3 mean) {
+  return exposure.factor /
+         (1.0 + 0.5 * exposure.factor * (luminance(seen) + luminance(mean)));
+}
+
+void prepare(int i, ivec2 pixel) {
+  vec3 seen = imageLoad(radiance, pixel).rgb;
+  vec4 mean = imageLoad(accumulated, pixel);
+  float unit = unit_of(seen, mean.rgb);
+  vec4 difference = vec4((mean.rgb - seen) * unit, mean.a * variance_scale * unit * unit);
+  // A number that is none must not spread.
+  bool bad = any(isnan(difference)) || any(isinf(difference));
+  differences[i] = bad ? vec4(0.0) : difference;
+  luminances[i] = bad ? vec2(0.0) : vec2(luminance(difference.rgb), luminance(seen) * unit);
+}
+
+/// Squared difference of two pixels in units of what noise explains.
+float apart(int a, int b) {
+  vec2 difference = luminances[a] - luminances[b];
+  float noise = differences[a].a + differences[b].a + least_noise;
+  return difference.x * difference.x / noise + guide_weight * difference.y * difference.y;
+}
+
+/// The weight of the patch around `b` in the mean of those like the one around `a`: 1 within the
+/// noise, 0 from twice as far.
+float likeness(int a, int b) {
+  float sum = 0.0;
+  for (int y = -patch_reach; y <= patch_reach; ++y) {
+    for (int x = -patch_reach; x <= patch_reach; ++x) {
+      int offset = y * side + x;
+      sum += apart(a + offset, b + offset);
+    }
+  }
+  float like = clamp(2.0 - sum / 9.0, 0.0, 1.0);
+  return like * like * like * like;
+}
+
+/// Where there is a number that is none, the frame is kept.
+void keep(ivec2 pixel, vec3 seen, vec3 color, float variance) {
+  vec4 texel = vec4(color, sqrt(variance));
+  if (any(isnan(texel)) || any(isinf(texel))) texel = vec4(seen, 0.0);
+  imageStore(filtered, pixel, clamp(texel, -greatest, greatest));
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  bool inside = all(lessThan(uvec2(pixel), shown));
+  if (noise_scale == 0.0) {
+    if (!inside) return;
+    vec4 mean = imageLoad(accumulated, pixel);
+    keep(pixel, imageLoad(radiance, pixel).rgb, mean.rgb, mean.a * variance_scale);
+    return;
+  }
+  ivec2 corner = ivec2(gl_WorkGroupID.xy) * 8 - reach;
+  ivec2 last = ivec2(shown) - 1;
+  for (int i = int(gl_LocalInvocationIndex); i < side * side; i += 64) {
+    prepare(i, clamp(corner + ivec2(i % side, i / side), ivec2(0), last));
+  }
+  barrier();
+  if (!inside) return;
+  ivec2 own = ivec2(gl_LocalInvocationID.xy) + reach;
+  int center = own.y * side + own.x;
+  vec3 sum = vec3(0.0);
+  float weights = 0.0, squares = 0.0;
+  for (int y = -window; y <= window; ++y) {
+    for (int x = -window; x <= window; ++x) {
+      int other = center + y * side + x;
+      float weight = likeness(center, other);
+      sum += differences[other].rgb * weight;
+      weights += weight;
+      squares += weight * weight;
+    }
+  }
+  vec3 seen = imageLoad(radiance, pixel).rgb;
+  vec4 mean = imageLoad(accumulated, pixel);
+  float share = squares / (weights * weights);
+  keep(pixel, seen, seen + sum / (weights * unit_of(seen, mean.rgb)),
+       mean.a * variance_scale * noise_scale * share);
+}
