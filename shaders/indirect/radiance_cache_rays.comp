@@ -99,8 +99,9 @@ bool probe_of(RadianceCell cell, uint slot, out Ray ray) {
 bool light_of_cell(RadianceCell cell, uint slot, uint check, out Ray shadow) {
   SurfaceMaterial m = white_surface(cell.normal);
   LightChoice choice = LightChoice(0u, 0.0, 0.0);
-  float pick = cell_number(check, 2u);
-  if (enabled(frame_direct)) choice = choose_light(m, cell.position, pick);
+  vec2 picks = cell_pair(check, 2u);
+  float pick = picks.x;
+  if (enabled(frame_direct)) choice = choose_light(m, cell.position, picks.y, pick);
   EmissiveChoice emissive = EmissiveChoice(vec3(0.0), 0.0, cell.normal, 0.0);
   if (scene_has(scene_emissive) && enabled(frame_emissive)) {
     vec2 u = cell_pair(check, 8u);

@@ -128,9 +128,10 @@ SHARED_CONSTANT uint texels_per_light = 5u;
 SHARED_CONSTANT uint scene_area_lights = 1u;
 SHARED_CONSTANT uint scene_many_lights = 2u;  // more than uniform_lights
 SHARED_CONSTANT uint scene_deforms = 4u;
-SHARED_CONSTANT uint scene_blends = 8u;     // has surfaces of partial coverage
-SHARED_CONSTANT uint scene_layers = 16u;    // has materials with layers other than the first
-SHARED_CONSTANT uint scene_emissive = 32u;  // has emissive triangles
+SHARED_CONSTANT uint scene_blends = 8u;       // has surfaces of partial coverage
+SHARED_CONSTANT uint scene_layers = 16u;      // has materials with layers other than the first
+SHARED_CONSTANT uint scene_emissive = 32u;    // has emissive triangles
+SHARED_CONSTANT uint scene_light_grid = 64u;  // has so many punctual lights (light_grid.h)
 
 SHARED_CONSTANT uint light_directional = 0u;
 SHARED_CONSTANT uint light_point = 1u;

@@ -33,7 +33,10 @@ void main() {
     SurfaceMaterial m = material_at(pixel);
     vec3 position = world_position(pixel, view_z);
     float pick = random_number(uvec2(pixel), frame.sample_index, 1u, frame.seed);
-    LightChoice choice = choose_light(m, position, pick);
+    // As composition does: the visibility is that of the light that it adds.
+    float picks =
+        random_number(uvec2(pixel), frame.sample_index, light_picks_dimension, frame.seed);
+    LightChoice choice = choose_light(m, position, picks, pick);
     if (choice.total > 0.0) {
       vec2 u = random_pair(uvec2(pixel), frame.sample_index, 2u, frame.seed);
       ray = light_ray(light_number(choice.number), m, position, view_z, u, pick, requested);

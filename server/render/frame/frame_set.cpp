@@ -1,6 +1,6 @@
 #include "render/frame/frame_set.hpp"
 
-#include "render/resources/light_table.hpp"
+#include "render/resources/lights/light_table.hpp"
 
 namespace heliograph::render {
 

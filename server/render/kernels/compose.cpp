@@ -9,7 +9,8 @@
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/simd/environment.hpp"
-#include "render/kernels/simd/lights.hpp"
+#include "render/kernels/simd/light_grid.hpp"
+#include "render/kernels/simd/random.hpp"
 #include "render/kernels/simd/view.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -19,6 +20,7 @@ template <class D, bool layered>
 class Composition {
   using V = hn::Vec<D>;
   using M = hn::Mask<D>;
+  using Unsigneds = hn::RebindToUnsigned<D>;
   using Material = std::conditional_t<layered, LayeredMaterial<V>, SurfaceMaterial<V>>;
 
   /// What each signal of a pixel is multiplied by, and what needs none.
@@ -40,16 +42,19 @@ class Composition {
 
  public:
   HWY_INLINE explicit Composition(const ComposeJob& job)
-      : job_(job), tables_(job.tables), environment_(job.frame, job.environment) {}
+      : job_(job),
+        tables_(job.tables),
+        environment_(job.frame, job.environment),
+        light_picks_({}, job.frame.sample_index, shared::light_picks_dimension, job.frame.seed) {}
 
   HWY_INLINE void rows(int first, int last) {
     std::vector<shared::Light> found;
     const int lanes = static_cast<int>(hn::Lanes(d_));
-    const int step = job_.lights.culls() ? std::max(lanes, 64) : job_.width;
+    const int step = job_.outside.culls() ? std::max(lanes, 64) : job_.width;
     for (int left = 0; left < job_.width; left += step) {
       const int right = std::min(left + step, job_.width);
-      lights_ = job_.lights.of({std::min(left, job_.width - lanes), first, right, last},
-                               job_.motion, found);
+      lights_ = job_.outside.of({std::min(left, job_.width - lanes), first, right, last},
+                                job_.motion, found);
       for (int y = first; y < last; ++y) {
         const ViewedRow<D> view(job_.frame, y);
         for (int x = left; x < right; x += lanes) block(view, std::min(x, job_.width - lanes), y);
@@ -111,7 +116,11 @@ class Composition {
     const M unlit = hn::And(seen, hn::Gt(packed.z, set(0.5f)));
     const M lit = hn::AndNot(unlit, seen);
     if (!hn::AllFalse(d_, lit)) {
-      add_lit(view, x, view_z, lit, material(view, x, y, base_color, packed), root.w, terms);
+      const Material m = material(view, x, y, base_color, packed);
+      if (enabled(shared::frame_direct)) {
+        terms.direct = direct(view.world_position(x, view_z), x, y, lit, m);
+      }
+      add_lit(lit, m, root.w, terms);
     }
     terms.own = select(unlit, base_color, terms.own);
     if (enabled(shared::frame_emissive)) {
@@ -136,12 +145,16 @@ class Composition {
     }
   }
 
-  HWY_INLINE void add_lit(const ViewedRow<D>& view, int x, V view_z, M lit, const Material& m,
-                          V occlusion, Terms& terms) const {
-    if (enabled(shared::frame_direct)) {
-      terms.direct =
-          direct_light(d_, lights_, job_.tables.ltc, m, view.world_position(x, view_z), lit);
-    }
+  HWY_INLINE Triple<V> direct(const Triple<V>& position, int x, int y, M lit,
+                              const Material& m) const {
+    const Triple<V> outside = direct_light(d_, lights_, job_.tables.ltc, m, position, lit);
+    if (!job_.lights.grid) return outside;
+    const V picks = light_picks_.at(hn::Iota(Unsigneds(), static_cast<std::uint32_t>(x)),
+                                    hn::Set(Unsigneds(), static_cast<std::uint32_t>(y)));
+    return outside + cell_light(d_, job_.lights, m, position, lit, picks);
+  }
+
+  HWY_INLINE void add_lit(M lit, const Material& m, V occlusion, Terms& terms) const {
     if (enabled(shared::frame_indirect)) {
       terms.indirect = select(lit, wide_albedo(m), terms.indirect);
     } else if (enabled(shared::frame_environment_diffuse)) {
@@ -217,7 +230,8 @@ class Composition {
   const ComposeJob& job_;
   LobeLanes<D> tables_;
   EnvironmentLanes environment_;
-  std::span<const shared::Light> lights_;  // that may reach the pixels
+  RandomNumbers<Unsigneds> light_picks_;
+  std::span<const shared::Light> lights_;  // outside of the grid that may reach the pixels
 };
 
 template <class D>

@@ -5,6 +5,7 @@
 #include "render/kernels/common/frame_job.hpp"
 #include "render/kernels/lights/reaching_lights.hpp"
 #include "render/resources/host_tables.hpp"
+#include "render/resources/lights/light_grid.hpp"
 
 namespace heliograph::render::kernels {
 
@@ -24,8 +25,9 @@ struct ComposeConstants {
 };
 
 struct ComposeJob : FrameJob<ComposeBindings, ComposeConstants> {
-  bool layered;                  // materials of the scene have layers
-  const ReachingLights& lights;  // the environment's sun among them
+  bool layered;                   // materials of the scene have layers
+  const ReachingLights& outside;  // of the lights' grid; the environment's sun among them
+  SceneLights lights;
   LobeTables tables;
   const Environment& environment;
 };

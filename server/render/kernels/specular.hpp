@@ -1,11 +1,10 @@
 #pragma once
 
-#include <span>
-
 #include "render/kernels/common/frame_job.hpp"
 #include "render/kernels/common/ray_sink.hpp"
 #include "render/kernels/common/tile.hpp"
 #include "render/resources/host_tables.hpp"
+#include "render/resources/lights/light_grid.hpp"
 #include "shaders/shared/radiance_cache.h"
 
 /// Reflections on all processors, in vectors.
@@ -65,7 +64,7 @@ struct SpecularShadeJob : FrameJob<SpecularShadeBindings, SpecularShadeConstants
   bool layered;  // as above
   SceneView scene;
   const Environment& environment;
-  std::span<const shared::Light> lights;
+  SceneLights lights;
   LobeTables tables;
 };
 void specular_shade(const SpecularShadeJob& job);

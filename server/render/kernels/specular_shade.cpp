@@ -9,7 +9,7 @@
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/simd/environment.hpp"
-#include "render/kernels/simd/lights.hpp"
+#include "render/kernels/simd/light_grid.hpp"
 #include "render/kernels/simd/material/hit_material.hpp"
 #include "render/kernels/simd/material/specular_lobe.hpp"
 #include "render/kernels/simd/radiance_cache.hpp"
@@ -33,7 +33,9 @@ class HitShading {
         environment_(job.frame, job.environment),
         tables_(job.tables),
         picks_(specular_numbers(job.frame, 5, job.constants.scale)),
-        points_(specular_pairs(job.frame, 6, job.constants.scale)) {}
+        points_(specular_pairs(job.frame, 6, job.constants.scale)),
+        entry_picks_(
+            specular_numbers(job.frame, shared::light_picks_dimension, job.constants.scale)) {}
 
   /// @return how many shadow rays there are, which lie at `shadows`
   std::size_t block(int first, int last, shared::Ray* shadows) {
@@ -168,7 +170,9 @@ class HitShading {
                                     shared::Ray* shadows) const {
     const Unsigned x = as_unsigned(cell.x), y = as_unsigned(cell.y);
     Float pick = picks_.at(x, y);
-    const LightChoice chosen = choose_light(job_.lights, job_.tables.ltc, m, position, lit, pick);
+    const Float entry_picks = job_.lights.grid ? entry_picks_.at(x, y) : zero();
+    const LightChoice chosen =
+        choose_light(job_.lights, job_.tables.ltc, m, position, lit, entry_picks, pick);
     const Mask known = hn::Ge(shown, zero());
     light = light + keep(known, chosen.sum * shown);
     const Mask valid = hn::AndNot(known, hn::And(lit, hn::Gt(chosen.total, zero())));
@@ -176,7 +180,8 @@ class HitShading {
     Float2 u;
     points_.at(x, y, u.x, u.y);
     RayLanes shadow;
-    const Mask seen = aim(job_.lights, chosen, m, position, u, pick, valid, shadow);
+    const Mask seen =
+        aim(job_.lights.all, job_.lights.outside, chosen, m, position, u, pick, valid, shadow);
     shadow.origin = offset_origin(position, m.geometric, zero());
     shadow.t_min = zero();
     // Without shadows every light is visible: an empty interval hits nothing.
@@ -204,6 +209,7 @@ class HitShading {
   LobeLanes<Tag> tables_;
   RandomNumbers<UnsignedTag> picks_;
   RandomPairs<UnsignedTag> points_;
+  RandomNumbers<UnsignedTag> entry_picks_;
 };
 
 template <class Surface>

@@ -8,7 +8,7 @@
 #define HWY_TARGET_INCLUDE "render/kernels/visibility_rays.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
-#include "render/kernels/simd/lights.hpp"
+#include "render/kernels/simd/light_grid.hpp"
 #include "render/kernels/simd/random.hpp"
 #include "render/kernels/simd/rays.hpp"
 #include "render/kernels/simd/tiles.hpp"
@@ -74,18 +74,24 @@ class ShadowRays : public VisibilityRays<ShadowRays<layered>, ShadowRaysJob> {
       : Base(job, shared::plan_shadows),
         tables_(job.tables),
         picks_(unsigned_tag, job.frame.sample_index, 1u, job.frame.seed),
-        points_(unsigned_tag, job.frame.sample_index, 2u, job.frame.seed) {}
+        points_(unsigned_tag, job.frame.sample_index, 2u, job.frame.seed),
+        // As compose() does: the visibility is that of the light that it adds.
+        entry_picks_(unsigned_tag, job.frame.sample_index, shared::light_picks_dimension,
+                     job.frame.seed) {}
 
   HWY_INLINE void make(const PixelLanes& pixels, RayLanes& ray, Mask& requested) const {
     const Float view_z = gathered_last(job_.motion, pixels);
     const auto m = gbuffer_material<layered>(job_, pixels, camera_.to_eye(pixels), tables_);
     const Float3 position = camera_.world_position(pixels, view_z);
-    Float pick = picks_.at(as_unsigned(pixels.x), as_unsigned(pixels.y));
+    const Unsigned x = as_unsigned(pixels.x), y = as_unsigned(pixels.y);
+    Float pick = picks_.at(x, y);
+    const Float entry_picks = job_.lights.grid ? entry_picks_.at(x, y) : zero();
     const LightChoice light =
-        choose_light(job_.lights, job_.tables.ltc, m, position, requested, pick);
+        choose_light(job_.lights, job_.tables.ltc, m, position, requested, entry_picks, pick);
     Float2 u;
-    points_.at(as_unsigned(pixels.x), as_unsigned(pixels.y), u.x, u.y);
-    requested = aim(job_.lights, light, m, position, u, pick, requested, ray);
+    points_.at(x, y, u.x, u.y);
+    requested =
+        aim(job_.lights.all, job_.lights.outside, light, m, position, u, pick, requested, ray);
     ray.origin = offset_origin(position, m.geometric, view_z);
   }
 
@@ -93,6 +99,7 @@ class ShadowRays : public VisibilityRays<ShadowRays<layered>, ShadowRaysJob> {
   LobeLanes<Tag> tables_;
   RandomNumbers<UnsignedTag> picks_;
   RandomPairs<UnsignedTag> points_;
+  RandomNumbers<UnsignedTag> entry_picks_;
 };
 
 class AmbientRays : public VisibilityRays<AmbientRays, AmbientRaysJob> {

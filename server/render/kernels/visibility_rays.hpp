@@ -1,10 +1,9 @@
 #pragma once
 
-#include <span>
-
 #include "render/kernels/common/frame_job.hpp"
 #include "render/kernels/common/ray_sink.hpp"
 #include "render/kernels/common/tile.hpp"
+#include "render/resources/lights/light_grid.hpp"
 
 namespace heliograph::render::kernels {
 
@@ -21,8 +20,8 @@ struct VisibilityRaysConstants {
   std::uint32_t by_plan;  // 0: every pixel is sampled
 };
 struct ShadowRaysJob : FrameJob<ShadowRaysBindings, VisibilityRaysConstants> {
-  bool layered;                           // materials of the scene have layers
-  std::span<const shared::Light> lights;  // the environment's sun among them
+  bool layered;        // materials of the scene have layers
+  SceneLights lights;  // the environment's sun among them
   LobeTables tables;
   Rows rows;  // whose rays are made
 };

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "render/resources/light_table.hpp"
+#include "render/resources/lights/light_table.hpp"
 #include "render/resources/placement.hpp"
 #include "scene/animation/deform.hpp"
 #include "scene/gltf/nodes/lights.hpp"
@@ -191,8 +191,8 @@ MovingScene::MovingScene(const gpu::Device& device, const tracing::RayTracer& tr
   previous_lights_ = lights_;
   if (!resources_->scene->clips.empty()) {
     moving_ = std::make_unique<Moving>(device, *resources_);
-    own_lights_ = make_light_table(device, lights_.size());
-    write_lights(own_lights_, lights_);
+    own_lights_ = make_light_table(device, lights_);
+    write_lights(own_lights_, lights_, resources_->scene->bounds);
     remake_emissive();
   }
   bind_tables();
@@ -249,8 +249,8 @@ bool MovingScene::set_lights(std::span<const shared::Light> lights) {
   lights_at_rest_.assign(lights.begin(), lights.end());
   lights_are_new_ = true;
   if (own_lights_) return false;
-  own_lights_ = make_light_table(device_, lights.size());
-  write_lights(own_lights_, lights_);
+  own_lights_ = make_light_table(device_, lights_);
+  write_lights(own_lights_, lights_, resources_->scene->bounds);
   bind_tables();
   return true;
 }
@@ -347,7 +347,7 @@ bool MovingScene::move_lights(const scene::Pose& before) {
     any = true;
   }
   lights_are_new_ = false;
-  if (any) write_lights(own_lights_, lights_);
+  if (any) write_lights(own_lights_, lights_, scene.bounds);
   return any;
 }
 

@@ -7,7 +7,7 @@
 #include <map>
 #include <tuple>
 
-#include "render/resources/light_table.hpp"
+#include "render/resources/lights/light_table.hpp"
 #include "render/resources/placement.hpp"
 #include "scene/gltf/materials/images.hpp"
 #include "scene/gltf/materials/layer_table.hpp"
@@ -219,13 +219,14 @@ void SceneResources::upload_tables(const gpu::Device& device) {
       });
   features = (areas ? shared::scene_area_lights : 0u) |
              (lights.size() > shared::uniform_lights ? shared::scene_many_lights : 0u) |
+             (needs_light_grid(lights) ? shared::scene_light_grid : 0u) |
              (scene->deformations.empty() ? 0u : shared::scene_deforms) |
              (blends ? shared::scene_blends : 0u) |
              (scene->layers.size() > 1 ? shared::scene_layers : 0u);
   layers = upload(device, "material layers",
                   scene->layers.empty() ? std::vector{scene::plain_layer()} : scene->layers);
-  rest_tables.lights = make_light_table(device, lights.size());
-  write_lights(rest_tables.lights, lights);
+  rest_tables.lights = make_light_table(device, lights);
+  write_lights(rest_tables.lights, lights, scene->bounds);
   rest_tables.alpha_heap =
       upload(device, "alpha masks", scene->alpha_heap, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
 }

@@ -18,7 +18,8 @@ layout(set = 1, binding = 10, rgba32f) readonly uniform image2D indirect_radianc
 layout(push_constant) uniform Constants { float max_roughness; };  // below 0: nothing was traced
 
 #include "lib/scene/gbuffer_material.glsl"
-#include "lib/lighting/lights.glsl"
+#include "lib/lighting/light_grid.glsl"
+#include "lib/math/random.glsl"
 #include "lib/math/sampling.glsl"
 #include "lib/rays/specular_pixels.glsl"
 
@@ -40,7 +41,11 @@ Composition without_light(vec3 own) {
 Composition lit_composition(ivec2 pixel, float view_z) {
   SurfaceMaterial m = material_at(pixel);
   Composition terms = without_light(vec3(0.0));
-  if (enabled(frame_direct)) terms.direct = direct_light(m, world_position(pixel, view_z));
+  if (enabled(frame_direct)) {
+    float picks =
+        random_number(uvec2(pixel), frame.sample_index, light_picks_dimension, frame.seed);
+    terms.direct = direct_light(m, world_position(pixel, view_z), picks);
+  }
   if (enabled(frame_indirect)) {
     terms.indirect = wide_albedo(m);
   } else if (enabled(frame_environment_diffuse)) {

@@ -1,7 +1,7 @@
 // Choosing lights, and points of lights, in proportion to what they send to the eye.
 #ifndef HELIOGRAPH_LIGHT_CHOICE_GLSL
 #define HELIOGRAPH_LIGHT_CHOICE_GLSL
-#include "lib/lighting/lights.glsl"
+#include "lib/lighting/light_grid.glsl"
 #include "shared/ray.h"
 
 const uint area_candidates = 4u;
@@ -18,7 +18,7 @@ bool takes(float weight, inout float total, inout float pick) {
 
 struct LightChoice {
   uint number;
-  float weight;  // luminance of its unshadowed contribution
+  float weight;  // luminance of its own unshadowed contribution
   float total;   // of all lights; 0: there is none to choose
 };
 
@@ -29,6 +29,26 @@ LightChoice choose_light(SurfaceMaterial m, vec3 position, inout float pick) {
     float weight = luminance(light_contribution(light_number(i), m, position));
     if (!takes(weight, choice.total, pick)) continue;
     choice.number = i;
+    choice.weight = weight;
+  }
+  return choice;
+}
+
+/// The same among the lights that count where the surface lies. `picks` in [0, 1) says which stand
+/// for others.
+LightChoice choose_light(SurfaceMaterial m, vec3 position, float picks, inout float pick) {
+  if (!uses_light_grid()) return choose_light(m, position, pick);
+  LightChoice choice = LightChoice(0u, 0.0, 0.0);
+  CellLights cell = cell_lights(position);
+  uint outside = outside_count(cell);
+  for (uint i = 0u; i < outside + most_light_entries; ++i) {
+    EntryLight entry = i < outside ? EntryLight(outside_light(cell, i), 1.0)
+                                   : entry_light(cell, i - outside, picks);
+    if (entry.weight == 0.0) break;
+    if (!light_reaches(entry.number, position)) continue;
+    float weight = luminance(light_contribution(light_number(entry.number), m, position));
+    if (!takes(weight * entry.weight, choice.total, pick)) continue;
+    choice.number = entry.number;
     choice.weight = weight;
   }
   return choice;

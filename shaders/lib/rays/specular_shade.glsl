@@ -85,7 +85,8 @@ float shown_shadows(uint instance, vec3 position, vec3 geometric) {
 Ray light_shadow_ray(SurfaceMaterial m, vec3 position, vec3 weight, ivec2 pixel, out bool valid) {
   ivec2 cell = pixel / scale;
   float pick = specular_number(cell, 5u, scale);
-  LightChoice choice = choose_light(m, position, pick);
+  float picks = specular_number(cell, light_picks_dimension, scale);
+  LightChoice choice = choose_light(m, position, picks, pick);
   valid = false;
   Ray ray;
   if (choice.total <= 0.0) return ray;
@@ -125,7 +126,8 @@ void main() {
       if (with_lights != 0u && enabled(frame_direct) && (s.flags & material_unlit) == 0u) {
         float shown = shown_shadows(hit.instance, s.position, s.geometric);
         if (shown >= 0.0) {
-          light += direct_light(m, s.position) * shown;
+          float picks = specular_number(pixel / scale, light_picks_dimension, scale);
+          light += direct_light(m, s.position, picks) * shown;
         } else {
           shadow = light_shadow_ray(m, s.position, weight, pixel, requested);
         }

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <ctime>
 #include <random>
 
 #include "tests/image/support/renderer_rig.hpp"
@@ -41,6 +43,7 @@ std::vector<scene::Light> many_lights(int count) {
   return all;
 }
 
+/// Sums of all lights, without a grid.
 render::FloatImage render_hdr(const std::shared_ptr<scene::Scene>& scene, const char* name) {
   RendererRig rig(scene, scene::constant_environment(glm::vec3(0.0f)), look({0, 9, 12}, {0, 0, 0}),
                   lights_width, lights_height);
@@ -49,6 +52,7 @@ render::FloatImage render_hdr(const std::shared_ptr<scene::Scene>& scene, const 
   settings.antialiasing.jitter = false;
   settings.specular.enabled = false;
   settings.environment.visible = false;
+  settings.lighting.light_grid = false;
   rig.apply(settings);
   const render::Frame frame = rig.accumulate(1);
   if (name) save_image(name, frame);
@@ -86,6 +90,153 @@ TEST(ManyLights, TwoThousandLightsEqualSumOfBatches) {
 // Of so few lights none is left out where it does not reach.
 TEST(ManyLights, LightsOutOfReachAreLeftOutWithoutADifference) {
   expect_sum_of_batches(many_lights(120), 12, "lights_out_of_reach");
+}
+
+/// Point and spot lights without range in the same places.
+std::vector<scene::Light> unlimited_lights(int count) {
+  std::vector<scene::Light> all = many_lights(count);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    shared::Light& light = all[i].device;
+    if (light.type == shared::light_disk) light.color *= 0.05f;
+    light.type = i % 5 == 0 ? shared::light_spot : shared::light_point;
+    light.range = 0.0f;
+    light.color *= 600.0f / static_cast<float>(count);
+    light.spot_scale = 3.0f;
+    light.spot_offset = -1.5f;
+  }
+  return all;
+}
+
+/// The mean of `samples` frames.
+render::FloatImage render_lit_mean(const std::vector<scene::Light>& lights, bool by_grid,
+                                   std::uint32_t samples, bool shadows) {
+  const auto scene = courtyard();
+  scene->lights = lights;
+  RendererRig rig(scene, scene::constant_environment(glm::vec3(0.0f)), look({0, 9, 12}, {0, 0, 0}),
+                  lights_width, lights_height);
+  protocol::Settings settings = undenoised();
+  settings.shadows.enabled = shadows;
+  settings.specular.enabled = shadows;
+  settings.specular.hit_shading = protocol::HitShading::traced;
+  settings.antialiasing.jitter = false;
+  settings.environment.visible = false;
+  settings.lighting.light_grid = by_grid;
+  rig.apply(settings);
+  const render::Frame frame = rig.accumulate(samples);
+  save_image(by_grid ? "lights_by_grid" : "lights_summed", frame);
+  return rig.capture("accumulated");
+}
+
+struct Deviation {
+  double mean;  // of the images' sums
+  double rms;   // of pixels; both relative to the exact image's mean
+};
+Deviation deviation(const render::FloatImage& exact, const render::FloatImage& other) {
+  double sum = 0.0, off = 0.0, squares = 0.0, pixels = 0.0;
+  for (std::size_t i = 0; i < exact.rgba.size(); i += 4) {
+    const double expected = exact.rgba[i] + exact.rgba[i + 1] + exact.rgba[i + 2];
+    const double error = other.rgba[i] + other.rgba[i + 1] + other.rgba[i + 2] - expected;
+    sum += expected;
+    off += error;
+    squares += error * error;
+    pixels += 1.0;
+  }
+  return {off / sum, std::sqrt(squares / pixels) / (sum / pixels)};
+}
+
+TEST(ManyLights, OneFrameByTheGridIsNotFarFromTheSum) {
+  const auto lights = unlimited_lights(1000);
+  const auto exact = render_lit_mean(lights, false, 1, false);
+  const Deviation one = deviation(exact, render_lit_mean(lights, true, 1, false));
+  RecordProperty("relative_error", std::to_string(one.rms));
+  EXPECT_LT(one.rms, 1.0);  // nearly all of it in highlights of metal
+  EXPECT_LT(std::abs(one.mean), 0.05);
+}
+
+TEST(ManyLights, FramesByTheGridConvergeToTheSum) {
+  const auto lights = unlimited_lights(1000);
+  const auto exact = render_lit_mean(lights, false, 1, false);
+  const Deviation many = deviation(exact, render_lit_mean(lights, true, 256, false));
+  EXPECT_LT(many.rms, 0.04);
+  EXPECT_LT(std::abs(many.mean), 1e-3);
+}
+
+TEST(ManyLights, ShadowsAndReflectionsByTheGridConvergeToThoseOfAllLights) {
+  const auto lights = unlimited_lights(300);
+  const auto exact = render_lit_mean(lights, false, 512, true);
+  const Deviation many = deviation(exact, render_lit_mean(lights, true, 512, true));
+  EXPECT_LT(std::abs(many.mean), 4e-3);
+  EXPECT_LT(many.rms, 0.1);
+}
+
+scene::Camera passing(int frame) {
+  return look({0.05f * static_cast<float>(frame), 6, 12}, {0, 0, 0});
+}
+constexpr int last_frame = 40;
+
+render::Frame render_passing(const std::vector<scene::Light>& lights, bool by_grid) {
+  const auto scene = courtyard();
+  scene->lights = lights;
+  RendererRig rig(scene, scene::constant_environment(glm::vec3(0.1f)), passing(0), 320, 180);
+  protocol::Settings settings;
+  settings.indirect.enabled = false;
+  settings.lighting.light_grid = by_grid;
+  rig.apply(settings);
+  rig.renderer.set_frame_seconds(1.0f / 30.0f);
+  render::Frame shown;
+  for (int i = 0; i <= last_frame; ++i) {
+    rig.renderer.set_camera(passing(i));
+    shown = rig.renderer.render();
+  }
+  save_image(by_grid ? "passing_by_grid" : "passing_summed", shown);
+  return shown;
+}
+
+/// The mean of many frames at rest, by the sum of all lights.
+render::Frame render_passing_truth(const std::vector<scene::Light>& lights) {
+  const auto scene = courtyard();
+  scene->lights = lights;
+  RendererRig rig(scene, scene::constant_environment(glm::vec3(0.1f)), passing(last_frame), 320,
+                  180);
+  protocol::Settings settings = undenoised();
+  settings.lighting.light_grid = false;
+  rig.apply(settings);
+  const render::Frame truth = rig.accumulate(48);
+  save_image("passing_truth", truth);
+  return truth;
+}
+
+TEST(ManyLights, AMovingViewByTheGridIsNearlyAsSimilarToTheGroundTruth) {
+  const auto lights = unlimited_lights(1000);
+  const render::Frame truth = render_passing_truth(lights);
+  const double summed = ssim(truth, render_passing(lights, false));
+  const double by_grid = ssim(truth, render_passing(lights, true));
+  RecordProperty("summed", std::to_string(summed));
+  RecordProperty("by_grid", std::to_string(by_grid));
+  EXPECT_GT(by_grid, summed - 0.06);
+}
+
+/// Processor time of a moving frame, seconds: the least of a few.
+double frame_cost(const std::vector<scene::Light>& lights) {
+  const auto scene = courtyard();
+  scene->lights = lights;
+  RendererRig rig(scene, scene::constant_environment(glm::vec3(0.2f)), look({0, 9, 12}, {0, 0, 0}),
+                  320, 180);
+  double least = 1e9;
+  for (int i = 0; i < 40; ++i) {
+    rig.renderer.set_camera(look({0.02f * static_cast<float>(i), 9, 12}, {0, 0, 0}));
+    const std::clock_t before = std::clock();
+    rig.renderer.render();
+    const double cost = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+    if (i >= 28) least = std::min(least, cost);
+  }
+  return least;
+}
+
+TEST(ManyLights, CostHardlyGrowsWithTheirNumber) {
+  const double few = frame_cost(unlimited_lights(17)), many = frame_cost(unlimited_lights(1000));
+  RecordProperty("ratio", std::to_string(many / few));
+  EXPECT_LT(many, 1.5 * few);
 }
 
 }  // namespace

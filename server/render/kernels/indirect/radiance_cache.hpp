@@ -8,6 +8,7 @@
 #include "render/kernels/common/ray_sink.hpp"
 #include "render/kernels/common/tile.hpp"
 #include "render/resources/host_tables.hpp"
+#include "render/resources/lights/light_grid.hpp"
 #include "shaders/shared/emissive.h"
 #include "shaders/shared/radiance_cache.h"
 
@@ -106,7 +107,7 @@ struct RadianceCacheRaysBindings {
   gpu::ReadBuffer<Stage, shared::EmissivePoint> points;
 };
 struct RadianceCacheRaysJob : FrameJob<RadianceCacheRaysBindings, shared::RadianceCacheConstants> {
-  std::span<const shared::Light> lights;
+  SceneLights lights;
   LobeTables tables;
   bool samples_emissive;  // whether `points` are those of this frame
 };

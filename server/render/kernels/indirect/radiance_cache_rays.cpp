@@ -6,7 +6,7 @@
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/simd/emissive_choice.hpp"
-#include "render/kernels/simd/lights.hpp"
+#include "render/kernels/simd/light_grid.hpp"
 #include "render/kernels/simd/radiance_cache.hpp"
 #include "render/kernels/simd/random.hpp"
 #include "render/kernels/simd/rays.hpp"
@@ -116,7 +116,8 @@ class CellUpdates {
   HWY_INLINE void add_rays(std::size_t at, RayBatch& rays, RayBatch& shadows) const {
     const std::size_t count = std::min(count_ - at, hn::Lanes(tag));
     StoredTriples positions, normals;
-    HWY_ALIGN std::array<float, hn::MaxLanes(Tag())> pick{}, u{}, v{}, across{}, down{};
+    HWY_ALIGN std::array<float, hn::MaxLanes(Tag())> pick{}, entry_picks{}, u{}, v{}, across{},
+        down{};
     HWY_ALIGN std::array<int, hn::MaxLanes(Tag())> slots{};
     for (std::size_t lane = 0; lane < hn::Lanes(tag); ++lane) {
       const int slot = due_[at + std::min(lane, count - 1)];
@@ -127,7 +128,8 @@ class CellUpdates {
       normals.put(lane, cell.normal);
       const glm::vec2 direction = numbers_.at(check, 1), point = numbers_.at(check, 3);
       u[lane] = direction.x, v[lane] = direction.y;
-      pick[lane] = numbers_.at(check, 2).x;
+      const glm::vec2 picks = numbers_.at(check, 2);
+      pick[lane] = picks.x, entry_picks[lane] = picks.y;
       across[lane] = point.x, down[lane] = point.y;
     }
     const auto load = [](const auto& values) HWY_ATTR { return hn::Load(tag, values.data()); };
@@ -141,7 +143,8 @@ class CellUpdates {
     ray.pixel = hn::Load(integer_tag, slots.data());
     ray.user = {zero(), zero(), cosine_density(dot(ray.direction, normal))};
     rays.add(ray, requested);
-    const Receivers receivers{position, normal, load(pick), {load(across), load(down)}, requested};
+    const Receivers receivers{
+        position, normal, load(pick), load(entry_picks), {load(across), load(down)}, requested};
     if (!job_.samples_emissive) {
       const LightRays light = light_rays(ray, receivers);
       return shadows.add(light.ray, light.valid);
@@ -151,7 +154,7 @@ class CellUpdates {
 
   struct Receivers {
     Float3 position, normal;
-    Float pick;
+    Float pick, entry_picks;
     Float2 point;
     Mask requested;
   };
@@ -168,9 +171,10 @@ class CellUpdates {
     if ((job_.frame.flags & shared::frame_direct) == 0) return made;
     const SurfaceMaterial<Float> m = white_surface(at.normal);
     Float pick = at.pick;
-    const LightChoice light =
-        choose_light(job_.lights, job_.tables.ltc, m, at.position, at.requested, pick);
-    made.valid = aim(job_.lights, light, m, at.position, at.point, pick, at.requested, made.ray);
+    const LightChoice light = choose_light(job_.lights, job_.tables.ltc, m, at.position,
+                                           at.requested, at.entry_picks, pick);
+    made.valid = aim(job_.lights.all, job_.lights.outside, light, m, at.position, at.point, pick,
+                     at.requested, made.ray);
     if ((job_.frame.flags & shared::frame_shadows) == 0) made.ray.t_max = zero();
     made.ray.user = light.contribution * (light.total / light.weight);
     made.total = light.total;

@@ -7,6 +7,7 @@
 #define HELIOGRAPH_KERNELS_LIGHTS_HPP
 #endif
 
+#include <ranges>
 #include <span>
 
 #include "render/kernels/simd/area_lights.hpp"
@@ -114,40 +115,62 @@ struct LightChoice {
   bool areas;      // whether any lane chose a light with an area
 };
 
+HWY_INLINE LightChoice no_choice() {
+  return {numbers(0.0f), zero(), one(),      numbers(0.0f), numbers(glm::vec3(0.0f, 1.0f, 0.0f)),
+          one(),         zero(), integer(0), false};
+}
+
+/// Adds `sent`, for which the light is chosen where `pick`, which stays uniform, decides so.
+HWY_INLINE Mask offer(LightChoice& choice, const Float3& sent, Float& pick) {
+  const Float weight = luminance(sent);
+  const Mask shines = hn::Gt(weight, zero());
+  choice.sum = choice.sum + sent;
+  choice.total = choice.total + hn::IfThenElseZero(shines, weight);
+  const Float probability = weight / select(shines, choice.total, one());
+  const Mask chosen = hn::And(shines, hn::Lt(pick, probability));
+  const Float remaining = (pick - probability) / (one() - probability);
+  pick = select(chosen, pick / probability, select(shines, remaining, pick));
+  choice.weight = select(chosen, weight, choice.weight);
+  choice.contribution = select(chosen, sent, choice.contribution);
+  return chosen;
+}
+
+/// The chosen light is punctual.
+HWY_INLINE void keep_way(LightChoice& choice, Mask chosen, const LightSample<Float>& s,
+                         Float spread) {
+  choice.direction = select(chosen, s.direction, choice.direction);
+  choice.distance = select(chosen, s.distance, choice.distance);
+  choice.spread = select(chosen, spread, choice.spread);
+}
+
+/// Offers one light, the same for all lanes.
+template <class Material>
+HWY_INLINE void offer_light(LightChoice& choice, const shared::Light& light, int light_number,
+                            const SquareTexels& ltc, const Material& m, const Float3& position,
+                            Mask requested, Float& pick) {
+  LightSample<Float> s{numbers(0.0f), zero(), zero()};
+  Float3 sent = numbers(0.0f);
+  if (none(light_contribution(tag, light, ltc, m, position, requested, s, sent))) return;
+  const Mask chosen = offer(choice, sent, pick);
+  if (none(chosen)) return;
+  choice.number = select(chosen, integer(light_number), choice.number);
+  if (has_area(light)) {
+    choice.areas = true;
+    return;
+  }
+  const bool far = light.type == shared::light_directional;
+  const Float radius = number(light.radius);
+  keep_way(choice, chosen, s, far ? radius : radius / s.distance);
+}
+
 /// `pick` decides, and stays uniform.
 template <class Material>
 HWY_INLINE LightChoice choose_light(std::span<const shared::Light> lights, const SquareTexels& ltc,
                                     const Material& m, const Float3& position, Mask requested,
                                     Float& pick) {
-  LightChoice choice{
-      numbers(0.0f), zero(), one(),      numbers(0.0f), numbers(glm::vec3(0.0f, 1.0f, 0.0f)),
-      one(),         zero(), integer(0), false};
+  LightChoice choice = no_choice();
   for (std::size_t i = 0; i < lights.size(); ++i) {
-    const shared::Light& light = lights[i];
-    LightSample<Float> s{numbers(0.0f), zero(), zero()};
-    Float3 sent = numbers(0.0f);
-    if (none(light_contribution(tag, light, ltc, m, position, requested, s, sent))) continue;
-    const Float weight = luminance(sent);
-    const Mask shines = hn::Gt(weight, zero());
-    choice.sum = choice.sum + sent;
-    choice.total = choice.total + hn::IfThenElseZero(shines, weight);
-    const Float probability = weight / select(shines, choice.total, one());
-    const Mask chosen = hn::And(shines, hn::Lt(pick, probability));
-    const Float remaining = (pick - probability) / (one() - probability);
-    pick = select(chosen, pick / probability, select(shines, remaining, pick));
-    if (none(chosen)) continue;
-    choice.weight = select(chosen, weight, choice.weight);
-    choice.contribution = select(chosen, sent, choice.contribution);
-    choice.number = select(chosen, integer(static_cast<int>(i)), choice.number);
-    if (has_area(light)) {
-      choice.areas = true;
-      continue;
-    }
-    choice.direction = select(chosen, s.direction, choice.direction);
-    choice.distance = select(chosen, s.distance, choice.distance);
-    const bool far = light.type == shared::light_directional;
-    const Float radius = number(light.radius);
-    choice.spread = select(chosen, far ? radius : radius / s.distance, choice.spread);
+    offer_light(choice, lights[i], static_cast<int>(i), ltc, m, position, requested, pick);
   }
   return choice;
 }
@@ -184,11 +207,12 @@ HWY_NOINLINE Mask sample_lit_point(const shared::Light& light, const Material& m
 }
 
 /// Toward a point of the chosen light: light_ray() of light_choice.glsl, its direction and length.
+/// `areas`: numbers of the lights that have an area, and of any others.
 /// @return where a point is seen, of `requested`
-template <class Material>
-HWY_INLINE Mask aim(std::span<const shared::Light> lights, const LightChoice& choice,
-                    const Material& m, const Float3& position, const Float2& u, Float pick,
-                    Mask requested, RayLanes& ray) {
+template <class Material, class Numbers>
+HWY_INLINE Mask aim(std::span<const shared::Light> lights, const Numbers& areas,
+                    const LightChoice& choice, const Material& m, const Float3& position,
+                    const Float2& u, Float pick, Mask requested, RayLanes& ray) {
   const Float2 disk = sample_disk(u.x, u.y);
   Float3 tangent, bitangent;
   orthonormal_basis(choice.direction, tangent, bitangent);
@@ -197,22 +221,31 @@ HWY_INLINE Mask aim(std::span<const shared::Light> lights, const LightChoice& ch
                               multiply_add(bitangent, disk.y * choice.spread, choice.direction)));
   Float distance = choice.distance;
   requested = hn::And(requested, hn::Gt(choice.total, zero()));
-  for (std::size_t i = 0; choice.areas && i < lights.size(); ++i) {
-    if (!has_area(lights[i])) continue;
-    const Mask chosen =
-        hn::And(requested, float_mask(hn::Eq(choice.number, integer(static_cast<int>(i)))));
-    if (none(chosen)) continue;
-    Float3 direction = ray.direction;
-    Float away = distance;
-    const Mask seen = sample_lit_point(lights[i], m, position, u, pick, direction, away);
-    ray.direction = select(chosen, direction, ray.direction);
-    distance = select(chosen, away, distance);
-    requested = hn::AndNot(hn::AndNot(seen, chosen), requested);
+  if (choice.areas) {
+    for (const std::uint32_t i : areas) {
+      if (!has_area(lights[i])) continue;
+      const Mask chosen =
+          hn::And(requested, float_mask(hn::Eq(choice.number, integer(static_cast<int>(i)))));
+      if (none(chosen)) continue;
+      Float3 direction = ray.direction;
+      Float away = distance;
+      const Mask seen = sample_lit_point(lights[i], m, position, u, pick, direction, away);
+      ray.direction = select(chosen, direction, ray.direction);
+      distance = select(chosen, away, distance);
+      requested = hn::AndNot(hn::AndNot(seen, chosen), requested);
+    }
   }
   // Geometry may lie where a light does and show it: it must not occlude itself.
   ray.t_max = distance * number(0.999f);
   // The light's disk may reach below the horizon, where nothing of it is seen.
   return hn::And(requested, hn::Gt(dot(ray.direction, m.geometric), zero()));
+}
+template <class Material>
+HWY_INLINE Mask aim(std::span<const shared::Light> lights, const LightChoice& choice,
+                    const Material& m, const Float3& position, const Float2& u, Float pick,
+                    Mask requested, RayLanes& ray) {
+  const auto all = std::views::iota(0u, static_cast<std::uint32_t>(lights.size()));
+  return aim(lights, all, choice, m, position, u, pick, requested, ray);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

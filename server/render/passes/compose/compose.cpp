@@ -2,7 +2,7 @@
 
 #include "render/kernels/compose.hpp"
 #include "render/passes/frame_inputs.hpp"
-#include "render/resources/light_table.hpp"
+#include "render/resources/lights/light_table.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
@@ -50,11 +50,13 @@ Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbu
       })
       .dispatch(gpu::each_pixel())
       .host([in](const kernels::ComposeJob::Pass& pass) {
-        const auto all = frame_lights(in.tables.lights, in.constants);
-        const kernels::ReachingLights lights(all, in.constants);
+        const FrameLights lights(in.tables.lights, in.constants, in.scene.features);
+        const auto outside = lights.outside();
+        const kernels::ReachingLights reaching(outside, in.constants);
         const bool separate_sun = in.settings.environment.separate_sun;
-        kernels::compose({pass, in.constants, kernels::has_layers(in.scene.features), lights,
-                          in.lobe_tables(), *in.moving.environment().view(separate_sun).maps.host});
+        kernels::compose({pass, in.constants, kernels::has_layers(in.scene.features), reaching,
+                          lights.view(), in.lobe_tables(),
+                          *in.moving.environment().view(separate_sun).maps.host});
       });
   return composed;
 }

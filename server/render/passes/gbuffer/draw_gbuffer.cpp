@@ -5,7 +5,7 @@
 #include "render/kernels/gbuffer/gbuffer_draw.hpp"
 #include "render/passes/gbuffer/frustum.hpp"
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
-#include "render/resources/light_table.hpp"
+#include "render/resources/lights/light_table.hpp"
 #include "render/resources/moving_scene.hpp"
 
 namespace heliograph::render {

@@ -4,7 +4,7 @@
 #include "render/passes/formats.hpp"
 #include "render/passes/lights/emissive_points.hpp"
 #include "render/passes/rays/ray_stream.hpp"
-#include "render/resources/light_table.hpp"
+#include "render/resources/lights/light_table.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "render/resources/scene_motion.hpp"
 #include "shaders/embedded.hpp"
@@ -66,9 +66,9 @@ UpdateRays generate(gpu::FramePlan& plan, const FrameInputs& in, const RadianceC
       .constants([in] { return cache_constants(in); })
       .dispatch({shared::cache_cells, 1})
       .host([in](const kernels::RadianceCacheRaysJob::Pass& pass) {
-        const auto lights = frame_lights(in.tables.lights, in.constants);
+        const FrameLights lights(in.tables.lights, in.constants, in.scene.features);
         kernels::radiance_cache_rays(
-            {pass, in.constants, lights, in.lobe_tables(), samples_emissive(in)});
+            {pass, in.constants, lights.view(), in.lobe_tables(), samples_emissive(in)});
       });
   return made;
 }

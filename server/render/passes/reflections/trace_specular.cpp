@@ -7,7 +7,7 @@
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/rays/sort_rays.hpp"
 #include "render/passes/sampling/plan_samples.hpp"
-#include "render/resources/light_table.hpp"
+#include "render/resources/lights/light_table.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
@@ -118,12 +118,12 @@ void shade(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer, 
       })
       .dispatch_indirect(hits.rays.count, ray_groups_offset)
       .host([in](const kernels::SpecularShadeJob::Pass& pass) {
-        const auto lights = frame_lights(in.tables.lights, in.constants);
+        const FrameLights lights(in.tables.lights, in.constants, in.scene.features);
         const bool separate_sun = in.settings.environment.separate_sun;
         kernels::specular_shade({pass, in.constants, kernels::has_layers(in.scene.features),
                                  kernels::view_scene(in.scene, in.tables, in.moving),
-                                 *in.moving.environment().view(separate_sun).maps.host, lights,
-                                 in.lobe_tables()});
+                                 *in.moving.environment().view(separate_sun).maps.host,
+                                 lights.view(), in.lobe_tables()});
       });
 }
 

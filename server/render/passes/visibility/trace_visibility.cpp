@@ -4,7 +4,7 @@
 #include "render/kernels/visibility_rays.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/sampling/plan_samples.hpp"
-#include "render/resources/light_table.hpp"
+#include "render/resources/lights/light_table.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
@@ -87,9 +87,9 @@ gpu::ImageRef trace_shadows(gpu::FramePlan& plan, const FrameInputs& in, const G
                                             .visibility = trace.visibility()})
         .constants(ray_constants(in, planned.has_value()))
         .host([in, rows](const kernels::ShadowRaysJob::Pass& job) {
-          const auto lights = frame_lights(in.tables.lights, in.constants);
-          kernels::shadows_rays({job, in.constants, kernels::has_layers(in.scene.features), lights,
-                                 in.lobe_tables(), rows});
+          const FrameLights lights(in.tables.lights, in.constants, in.scene.features);
+          kernels::shadows_rays({job, in.constants, kernels::has_layers(in.scene.features),
+                                 lights.view(), in.lobe_tables(), rows});
         });
   };
   return trace.trace(in.program(shaders::shadows_rays, in.scene.features), traces_shadows,
