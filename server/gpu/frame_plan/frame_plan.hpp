@@ -188,6 +188,11 @@ class FramePlan {
   void share_memory() { shares_memory_ = device_.is_cpu(); }
   /// Before compile(): an image that can be read after every frame.
   void keep(ImageRef image) { kept_.push_back(image.index); }
+  /// Before compile(): an image that no pass uses in frames that skip those that write it. It has
+  /// no defined content then, unless images are kept.
+  void leave_undefined_when_skipped(ImageRef image) {
+    undefined_when_skipped_.push_back(image.index);
+  }
   /// From the next frame on all images keep their content until another frame begins, and what
   /// passes left out, instead of only those for keep(): more memory, in which histories stay.
   void keep_images(bool keep);
@@ -355,6 +360,7 @@ class FramePlan {
   std::array<std::shared_ptr<const MemoryBlock>, 2> history_blocks_;
   std::vector<std::pair<std::uint32_t, std::uint64_t>> history_offsets_;  // of `current` ones
   std::vector<std::uint32_t> kept_;
+  std::vector<std::uint32_t> undefined_when_skipped_;
   std::uint32_t conditions_ = 0;                          // of passes, made so far
   const std::function<bool()>* asks_canceled_ = nullptr;  // while a frame may be canceled
   mutable std::mutex asking_;

@@ -101,7 +101,8 @@ bool FramePlan::leaves_out(std::uint32_t index) const {
 
 bool FramePlan::reads_left_out(std::uint32_t index) const {
   const auto uses = first_and_last_use(index);
-  if (!uses) return false;
+  if (!uses || std::ranges::find(undefined_when_skipped_, index) != undefined_when_skipped_.end())
+    return false;
   const bool history = resources_[index].part == Resource::Part::current;
   const auto is_it = [&](const Use& use) {
     return use.resource == index || (history && use.resource == index + 1);

@@ -241,10 +241,10 @@ TEST_F(ShaderReloadTest, ErrorOfAnIncludedFileIsToldOnce) {
 
 TEST_F(ShaderReloadTest, ChangedBindingIsAnError) {
   auto expected = view_->render();
-  folder_->replace(present, "layout(set = 1, binding = 1, rgba32f) readonly uniform",
-                   "layout(set = 1, binding = 1, rgba16f) readonly uniform");
+  folder_->replace(present, "layout(set = 1, binding = 1, rgba16f) readonly uniform",
+                   "layout(set = 1, binding = 1, rgba32f) readonly uniform");
   view_->wait();
-  EXPECT_NE(view_->error().find("shaders/post/present.comp:1: set 1 binding 1 \"accumulated\""),
+  EXPECT_NE(view_->error().find("shaders/post/present.comp:1: set 1 binding 1 \"mean\""),
             std::string::npos)
       << view_->error();
   render::draw_text(view_->error(), expected, 64, 64);

@@ -40,6 +40,8 @@ gpu::ImageRef filter_mean(gpu::FramePlan& plan, const FrameInputs& in, const Exp
       .when([in] { return weighs_mean(in); })
       .dispatch(in.shown)
       .host(kernels::filter_mean);
+  // The mean has no weight in such frames.
+  plan.leave_undefined_when_skipped(filtered);
   return filtered;
 }
 
