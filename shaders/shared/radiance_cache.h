@@ -28,6 +28,9 @@ SHARED_CONSTANT float cache_new_factor = 8.0f;
 SHARED_CONSTANT int finer_levels = 2;
 // Where a reflection shows a place that has no cell, so much of the sky is taken to light it.
 SHARED_CONSTANT float unknown_openness = 0.5f;
+// Reflections show the cells' light of lights where these are smaller than this fraction of the
+// width of the specular lobe, which is taken to be the length of the ray times roughness squared.
+SHARED_CONSTANT float cell_in_lobe = 1.0f;
 // One of so many rays moves the cell that it asks for.
 SHARED_CONSTANT uint moves_every = 8u;
 

@@ -57,7 +57,7 @@ struct SpecularShadeConstants {
   std::uint32_t lights;         // 0: only the environment lights what is hit
   std::int32_t scale;           // pixels to a texel of `radiance`
   std::uint32_t reuse_shadows;  // of the frame before
-  std::uint32_t padding;
+  std::uint32_t cached_lights;  // 1: rough surfaces reflect the cache's light of lights
   shared::RadianceCacheConstants cache;
 };
 struct SpecularShadeJob : FrameJob<SpecularShadeBindings, SpecularShadeConstants> {

@@ -55,15 +55,16 @@ class HitShading {
     std::size_t count = 0;
     if (!none(hit.met)) {
       travelled = select(hit.met, hn::Min(hit.t, travelled), travelled);
-      const auto s =
-          hit_surface<Surface, true>(job_.scene, hit, ray.direction, footprint(pixel, hit));
+      const Float roughness = reflector_roughness(pixel);
+      const Float width = footprint(pixel, hit, roughness);
+      const auto s = hit_surface<Surface, true>(job_.scene, hit, ray.direction, width);
       const Material m = material_of(s, ray.direction, tables_);
       if constexpr (Surface::layered) {
         // Rays stop where it covers, less those that its own colour would let through.
         weight = weight * select(hit.met, one() / (one() - s.passing), one());
       }
-      light = select(hit.met, steady_light(s, m, hit.t, ray.pixel, hit.met), light);
-      const Mask lit = hn::AndNot(s.has(shared::material_unlit), hit.met);
+      Mask lit = hn::AndNot(s.has(shared::material_unlit), hit.met);
+      light = select(hit.met, steady_light(s, m, hit.t, roughness, ray.pixel, lit), light);
       if (job_.constants.lights && enabled(shared::frame_direct) && !none(lit)) {
         count = add_lights(ray, weight, s.position, m, cell, lit, shown_shadows(hit, s, lit), light,
                            shadows);
@@ -79,38 +80,48 @@ class HitShading {
  private:
   bool enabled(std::uint32_t flag) const { return (frame_.flags & flag) != 0; }
 
-  /// Widths of the camera's ray cones after reflection at the pixels' roughness.
-  HWY_INLINE Float footprint(const PixelLanes& p, const HitLanes& hit) const {
-    const auto pitch = [](const gpu::HostView& image) {
-      return integer(static_cast<int>(image.row_pitch / sizeof(float)));
-    };
-    const Integer z = hn::Add(hn::Mul(p.y, pitch(job_.motion)), hn::ShiftLeft<2>(p.x));
+  /// Of rows, in 32-bit words.
+  static HWY_INLINE Integer texel_pitch(const gpu::HostView& image) {
+    return integer(static_cast<int>(image.row_pitch / sizeof(float)));
+  }
+
+  HWY_INLINE Float reflector_roughness(const PixelLanes& p) const {
+    const Integer at = hn::Add(hn::Mul(p.y, texel_pitch(job_.surface)), p.x);
+    return unpack_unorm8(gather(job_.surface.data, at)).x;
+  }
+
+  /// Widths of the camera's ray cones after reflection at surfaces of this roughness.
+  HWY_INLINE Float footprint(const PixelLanes& p, const HitLanes& hit, Float roughness) const {
+    const Integer z = hn::Add(hn::Mul(p.y, texel_pitch(job_.motion)), hn::ShiftLeft<2>(p.x));
     const Float view_z = gather(job_.motion.row<const float>(0), hn::Add(z, integer(3)));
-    const Integer at = hn::Add(hn::Mul(p.y, pitch(job_.surface)), p.x);
-    const Float roughness = unpack_unorm8(gather(job_.surface.data, at)).x;
     const Float spread = hn::MulAdd(number(0.5f) * roughness, roughness, number(cone_.y));
     const Float width = hn::MulAdd(number(cone_.y), view_z, number(cone_.x));
     return hn::MulAdd(spread, hit.t, width);
   }
 
-  /// What of a hit's light needs no ray.
-  HWY_INLINE Float3 steady_light(const Surface& s, const Material& m, Float t, Integer order,
-                                 Mask met) {
-    const Mask lit = hn::AndNot(s.has(shared::material_unlit), met);
+  /// What of a hit's light needs no ray. Hits whose light of lights is in it are no longer `lit`.
+  HWY_INLINE Float3 steady_light(const Surface& s, const Material& m, Float t, Float roughness,
+                                 Integer order, Mask& lit) {
     Float3 light = numbers(0.0f);
-    if (!none(lit)) light = cache_ ? gathered_light(s, m, t, order, lit) : open_light(m);
+    if (!none(lit)) light = cache_ ? gathered_light(s, m, t, roughness, order, lit) : open_light(m);
     light = select(s.has(shared::material_unlit), s.base_color, light);
     return enabled(shared::frame_emissive) ? light + s.emissive : light;
   }
 
-  HWY_INLINE Float3 gathered_light(const Surface& s, const Material& m, Float t, Integer order,
-                                   Mask lit) {
+  HWY_INLINE Float3 gathered_light(const Surface& s, const Material& m, Float t, Float roughness,
+                                   Integer order, Mask& lit) {
     const bool diffuse = enabled(shared::frame_environment_diffuse);
     const Float3 open = diffuse ? environment_.irradiance(m.normal) : numbers(0.0f);
     const CachedLanes cached = cached_light(*cache_, s, t, order, lit, touches_);
     const Float3 irradiance =
         select(cached.known, cached.indirect, open * number(shared::unknown_openness));
-    return reflected_light(m, irradiance, open, environment_, frame_.flags);
+    const Float3 light = reflected_light(m, irradiance, open, environment_, frame_.flags);
+    if (!job_.constants.cached_lights) return light;
+    // A mirror would show the cell.
+    const Float lobe = roughness * roughness * t * number(shared::cell_in_lobe);
+    const Mask by_cell = hn::And(cached.known, hn::Lt(cached.size, lobe));
+    lit = hn::AndNot(by_cell, lit);
+    return light + keep(by_cell, (wide_albedo(m) + m.specular_albedo) * cached.direct);
   }
 
   /// The environment's light as if nothing hid it.

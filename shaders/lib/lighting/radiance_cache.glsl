@@ -114,6 +114,7 @@ uint touch_cell(SeenPlace at, int level, uint frame_number) {
 struct CachedLight {
   vec3 direct;
   vec3 indirect;
+  float size;  // edge length of the cell, metres
   bool known;
 };
 
@@ -124,12 +125,12 @@ CachedLight cached_light(SeenPlace at, float t, RadianceCacheConstants c) {
   for (uint i = 0u; i < 2u; ++i) {
     uint slot = touch_cell(at, level, c.frame_number);
     if (slot != no_cell && cells[slot].samples > 0u) {
-      return CachedLight(cells[slot].direct, cells[slot].indirect, true);
+      return CachedLight(cells[slot].direct, cells[slot].indirect, exp2(float(level)), true);
     }
     if (level == coarse) break;
     level = coarse;
   }
-  return CachedLight(vec3(0.0), vec3(0.0), false);
+  return CachedLight(vec3(0.0), vec3(0.0), 0.0, false);
 }
 
 /// What a surface sends to the eye of indirect light: `irradiance` / pi. Its specular lobes show the

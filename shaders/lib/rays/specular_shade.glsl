@@ -30,20 +30,30 @@ layout(push_constant) uniform Constants {
   uint with_lights;  // 0: only the environment lights what is hit
   int scale;
   uint reuse_shadows;  // of the frame before
-  uint padding;
+  uint cached_lights;  // 1: rough surfaces reflect the cache's light of lights
   RadianceCacheConstants cache;
 };
 #ifdef READS_RADIANCE_CACHE
 #include "lib/lighting/radiance_cache.glsl"
+
+/// Whether lights' light at a hit may be that of its cell: a mirror would show the cell.
+bool blurs_cell(CachedLight cached, float roughness, float t) {
+  float width = roughness * roughness * t;
+  return cached_lights != 0u && cached.known && cached.size < width * cell_in_lobe;
+}
 #endif
 
 /// Light that comes from no light source: without a cache the environment's, as if nothing hid it.
-vec3 surrounding_light(HitSurface s, SurfaceMaterial m, float t) {
+/// `lit`: that of lights, too. `roughness`: of the surface that reflects.
+vec3 surrounding_light(HitSurface s, SurfaceMaterial m, float t, float roughness, out bool lit) {
+  lit = false;
 #ifdef READS_RADIANCE_CACHE
   SeenPlace at = SeenPlace(s.position, s.geometric, dot(s.front, s.geometric) < 0.0);
   CachedLight cached = cached_light(at, t, cache);
   vec3 open = enabled(frame_environment_diffuse) ? environment_irradiance(m.normal) : vec3(0.0);
-  return reflected_light(m, cached.known ? cached.indirect : open * unknown_openness, open);
+  vec3 light = reflected_light(m, cached.known ? cached.indirect : open * unknown_openness, open);
+  lit = blurs_cell(cached, roughness, t);
+  return lit ? light + (wide_albedo(m) + m.specular_albedo) * cached.direct : light;
 #else
   vec3 light = enabled(frame_environment_diffuse) ? environment_diffuse(m) : vec3(0.0);
   if (enabled(frame_environment_specular)) light += environment_specular(m);
@@ -51,14 +61,11 @@ vec3 surrounding_light(HitSurface s, SurfaceMaterial m, float t) {
 #endif
 }
 
-/// What of a hit's light needs no ray.
-vec3 steady_light(HitSurface s, SurfaceMaterial m, float t) {
-  vec3 light = vec3(0.0);
-  if ((s.flags & material_unlit) != 0u) {
-    light = s.base_color;
-  } else {
-    light = surrounding_light(s, m, t);
-  }
+/// What of a hit's light needs no ray. `lit`: no light needs one.
+vec3 steady_light(HitSurface s, SurfaceMaterial m, float t, float roughness, out bool lit) {
+  vec3 light = s.base_color;
+  lit = (s.flags & material_unlit) != 0u;
+  if (!lit) light = surrounding_light(s, m, t, roughness, lit);
   if (enabled(frame_emissive)) light += s.emissive;
   return light;
 }
@@ -117,13 +124,14 @@ void main() {
       if (enabled(frame_environment_specular)) light = environment_radiance(ray.direction);
     } else {
       travelled = min(hit.t, distance_of_misses);
-      RayCone cone = reflected_cone(camera_cone(), imageLoad(motion, pixel).w,
-                                   imageLoad(surface, pixel).x);
+      float roughness = imageLoad(surface, pixel).x;
+      RayCone cone = reflected_cone(camera_cone(), imageLoad(motion, pixel).w, roughness);
       HitSurface s = hit_surface(hit, ray.direction, cone_width(cone, hit.t));
       SurfaceMaterial m = material_of(s, ray.direction);
       if (scene_has(scene_blends)) weight *= stopped_weight(s);
-      light = steady_light(s, m, hit.t);
-      if (with_lights != 0u && enabled(frame_direct) && (s.flags & material_unlit) == 0u) {
+      bool lit;
+      light = steady_light(s, m, hit.t, roughness, lit);
+      if (with_lights != 0u && enabled(frame_direct) && !lit) {
         float shown = shown_shadows(hit.instance, s.position, s.geometric);
         if (shown >= 0.0) {
           float picks = specular_number(pixel / scale, light_picks_dimension, scale);

@@ -128,7 +128,9 @@ CachedLight CacheReader::read(const CacheQuery& ray, Lookup& lookup,
     touch(ray, lookup, touches);
     if (lookup.slot != no_cell) {
       const shared::RadianceCell& cell = cells_[lookup.slot];
-      if (cell.samples > 0) return {cell.direct, cell.indirect, true};
+      if (cell.samples > 0) {
+        return {cell.direct, cell.indirect, std::ldexp(1.0f, lookup.level)};
+      }
     }
     if (lookup.level == lookup.coarse) return {};
     look_at(ray, lookup.coarse, lookup);

@@ -54,7 +54,7 @@ struct CellKey {
 struct CachedLight {
   glm::vec3 direct{0.0f};
   glm::vec3 indirect{0.0f};
-  bool known = false;
+  float size = 0.0f;  // edge length of the cell, metres; 0: nothing is known
 };
 
 /// The cache as a pass of one frame reads it. What the pass asks for and does not find is written

@@ -21,6 +21,7 @@ namespace heliograph::render::kernels::HWY_NAMESPACE {
 /// Irradiance / pi.
 struct CachedLanes {
   Float3 direct, indirect;
+  Float size;  // edge length of the cell, metres
   Mask known;
 };
 
@@ -60,15 +61,16 @@ HWY_INLINE CachedLanes cached_light(const CacheReader& cache, const Surface& s, 
   });
   cache.find({rays.data(), count}, found.data(), touches);
   StoredTriples direct(numbers(0.0f)), indirect(numbers(0.0f));
-  HWY_ALIGN std::array<float, hn::MaxLanes(Tag())> known{};
+  HWY_ALIGN std::array<float, hn::MaxLanes(Tag())> sizes{};
   std::size_t next = 0;
   for_each_lane(requested, [&](std::size_t lane) {
     const CachedLight& light = found[next++];
     direct.put(lane, light.direct);
     indirect.put(lane, light.indirect);
-    known[lane] = light.known ? 1.0f : 0.0f;
+    sizes[lane] = light.size;
   });
-  return {direct.load(), indirect.load(), hn::Gt(hn::Load(tag, known.data()), zero())};
+  const Float size = hn::Load(tag, sizes.data());
+  return {direct.load(), indirect.load(), size, hn::Gt(size, zero())};
 }
 
 /// What surfaces send to the eye of indirect light. `open`: the environment's irradiance / pi.

@@ -110,11 +110,12 @@ void shade(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer, 
                                              .cache_cells = cells})
       .constants([in, scale = target.scale, known = hits.before.known] {
         const auto& s = in.settings.specular;
+        const bool traced = s.hit_shading == protocol::HitShading::traced;
         return kernels::SpecularShadeConstants{
-            s.hit_shading == protocol::HitShading::traced, scale,
+            traced, scale,
             known && s.reuse_shadows && leaves_visibility_out(in) &&
                 (in.constants.flags & shared::frame_shadows) != 0,
-            0, cache_constants(in)};
+            traced && in.settings.indirect.rough_reflections, cache_constants(in)};
       })
       .dispatch_indirect(hits.rays.count, ray_groups_offset)
       .host([in](const kernels::SpecularShadeJob::Pass& pass) {
