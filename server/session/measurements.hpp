@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "protocol/messages/messages.hpp"
+#include "render/api/frame_values.hpp"
 #include "stream/pacing/histogram.hpp"
 
 namespace heliograph::session {
@@ -21,18 +22,21 @@ struct RenderTotals {
   std::uint64_t failed_captures = 0;
   std::map<Pass, stream::Histogram> by_pass;
   std::vector<protocol::PassTiming> passes;  // of the latest frame
+  render::CacheUse radiance_cache;           // of the same
 };
 
 /// Totals of the time of rendering, encoding and captures, for metrics. Thread safe.
 class Measurements {
  public:
-  void rendered(double seconds, std::vector<protocol::PassTiming> passes) {
+  void rendered(double seconds, std::vector<protocol::PassTiming> passes,
+                const render::CacheUse& radiance_cache) {
     const std::lock_guard lock(mutex_);
     totals_.frames.add(seconds);
     for (const protocol::PassTiming& pass : passes) {
       totals_.by_pass[{pass.name, pass.kind}].add(pass.ms / 1000.0);
     }
     totals_.passes = std::move(passes);
+    totals_.radiance_cache = radiance_cache;
   }
   void encoded(double seconds) {
     const std::lock_guard lock(mutex_);

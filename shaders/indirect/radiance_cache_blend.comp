@@ -6,12 +6,16 @@ layout(local_size_x = 64) in;
 
 layout(set = 1, binding = 0, std430) buffer Keys { uint cache_keys[]; };
 layout(set = 1, binding = 1, std430) buffer Cells { RadianceCell cells[]; };
+layout(set = 1, binding = 2, std430) writeonly buffer Report { uint cells_alive; };
 layout(push_constant) uniform Constants { RadianceCacheConstants constants; };
 
 void main() {
   uint slot = gl_GlobalInvocationID.x;
   uint next = (constants.frame_number + 1u) % cache_counters;
-  if (slot == 0u) cache_keys[cache_counts + next] = cache_keys[cache_used_counts + next] = 0u;
+  if (slot == 0u) {
+    cells_alive = cache_keys[cache_counts + constants.frame_number % cache_counters];
+    cache_keys[cache_counts + next] = cache_keys[cache_used_counts + next] = 0u;
+  }
   if (cache_keys[slot] == 0u) return;
   if (cells[slot].state == cell_blocked) {
     cells[slot].position = cells[slot].anchor;

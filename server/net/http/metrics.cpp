@@ -189,6 +189,14 @@ void add_rendering(Page& page, const session::SessionHost& host) {
     page.sample("heliograph_pass_milliseconds",
                 {{"pass", pass.name}, {"kind", protocol::enum_name(pass.kind)}}, pass.ms);
   }
+  const auto number = [](auto value) { return static_cast<double>(value); };
+  page.gauge("heliograph_radiance_cache_cells",
+             "Cells of indirect light that the session of the latest frame knows.",
+             number(render.radiance_cache.cells));
+  page.gauge("heliograph_radiance_cache_cells_limit", "Most of them.",
+             number(render.radiance_cache.most_cells));
+  page.gauge("heliograph_radiance_cache_bytes", "Memory that its cells take.",
+             number(render.radiance_cache.bytes));
 }
 
 void add_scenes(Page& page, const session::SessionHost& host) {

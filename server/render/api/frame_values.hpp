@@ -52,6 +52,13 @@ struct BufferInfo {
   std::string description;
 };
 
+/// What the radiance cache of one view takes.
+struct CacheUse {
+  std::uint32_t cells = 0;
+  std::uint32_t most_cells = 0;
+  std::uint64_t bytes = 0;  // allocated, however few cells there are
+};
+
 /// One rendered frame, ready for an encoder.
 struct Frame {
   std::uint32_t width = 0;
@@ -61,6 +68,7 @@ struct Frame {
   bool converged = false;          // another frame would show the same
   float milliseconds = 0.0f;       // whole frame, wall clock
   std::vector<PassTime> passes;
+  CacheUse radiance_cache;  // nothing where indirect light is off
 };
 
 }  // namespace heliograph::render

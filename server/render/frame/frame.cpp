@@ -142,7 +142,9 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
       accumulate(plan, in, traces_reference ? trace_reference(plan, in) : composed.noisy);
   const Exposure exposure = expose(plan, in, composed.hdr, accumulated.current);
   const gpu::ImageRef resolved = temporal_antialias(plan, in, visible, exposure, composed.hdr);
-  return show(plan, in, accumulated, exposure, resolved);
+  FrameOutputs outputs = show(plan, in, accumulated, exposure, resolved);
+  outputs.radiance_cache = cache;
+  return outputs;
 }
 
 }  // namespace heliograph::render

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <optional>
+
 #include "gpu/frame_plan/frame_plan.hpp"
 #include "render/passes/frame_inputs.hpp"
+#include "render/passes/indirect/radiance_cache.hpp"
 #include "render/passes/post/exposure.hpp"
 
 namespace heliograph::render {
@@ -14,6 +17,7 @@ struct FrameOutputs {
   gpu::ImageRef mean;         // what is accumulated, filtered
   gpu::ImageRef mean_weight;  // of the latter in what is shown
   gpu::ImageRef output;       // sRGB, RGBA8
+  std::optional<RadianceCache> radiance_cache{};
 };
 
 /// Declares all passes of a frame, in order.

@@ -351,6 +351,10 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
     draw_text(state.parts.shader_reload->error(), frame.rgba, frame.width, frame.height);
   }
   frame.samples = state.clock.samples;
+  const CompiledFrame& compiled = *state.compiled;
+  if (compiled.outputs.radiance_cache) {
+    frame.radiance_cache = radiance_cache_use(compiled.plan, *compiled.outputs.radiance_cache);
+  }
   frame.converged = !needs_frame();
   if (moves) {
     const std::chrono::duration<float, std::milli> posing = posed - start;

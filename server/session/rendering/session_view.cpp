@@ -374,7 +374,7 @@ void SessionView::render_frame(double seconds) {
   const Clock::time_point end = Clock::now();
   measure_frame(view_state, end - start);
   services_.measurements.rendered(std::chrono::duration<double>(end - start).count(),
-                                  pass_timings(frame));
+                                  pass_timings(frame), frame.radiance_cache);
   newest_ = describe(std::move(frame), start, end);
   first_frame_due_ = false;
   newest_version_ = state_.version;

@@ -29,6 +29,7 @@ class Metrics(ServerTestCase):
                      "heliograph_ack_round_trip_seconds", "heliograph_render_seconds",
                      "heliograph_encode_seconds", "heliograph_pass_seconds",
                      "heliograph_scene_cache_hits_total", "heliograph_scene_cache_bytes",
+                     "heliograph_radiance_cache_bytes",
                      "heliograph_connections", "heliograph_http_responses_total",
                      "heliograph_resident_memory_bytes", "process_cpu_seconds_total"):
             self.assertIn(name, families)
@@ -56,6 +57,18 @@ class Metrics(ServerTestCase):
         self.assertGreater(after["sent_bytes_total"] - before["sent_bytes_total"], 0.5 * size)
         self.assertGreaterEqual(
             after["viewer_messages_total"] - before["viewer_messages_total"], frames + 2)
+
+    async def test_the_radiance_cache_has_cells_within_its_limit(self):
+        async with Viewer(self.server) as viewer:
+            await viewer.call("camera.set", {"eye": [3, 3, 3]})
+            await viewer.rest()
+        cells = self.value("heliograph_radiance_cache_cells")
+        limit = self.value("heliograph_radiance_cache_cells_limit")
+        self.assertGreater(cells, 0)
+        self.assertLess(cells, limit)
+        bytes_of_a_cell = self.value("heliograph_radiance_cache_bytes") / limit
+        self.assertGreater(bytes_of_a_cell, 32)
+        self.assertLess(bytes_of_a_cell, 256)
 
     async def test_histograms_fill(self):
         async with Viewer(self.server) as viewer:

@@ -237,6 +237,8 @@ void radiance_cache_blend(const RadianceCacheBlendJob& job) {
       cell.indirect = glm::mix(cell.indirect, cell.new_indirect, weight);
     }
   });
+  *job.report.data =
+      job.keys[shared::cache_counts + constants.frame_number % shared::cache_counters];
   const std::uint32_t next = (constants.frame_number + 1) % shared::cache_counters;
   job.keys[shared::cache_counts + next] = job.keys[shared::cache_used_counts + next] = 0;
 }

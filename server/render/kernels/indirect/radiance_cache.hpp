@@ -151,6 +151,7 @@ template <class Stage>
 struct RadianceCacheBlendBindings {
   gpu::ReadWriteBuffer<Stage, std::uint32_t> keys;
   gpu::ReadWriteBuffer<Stage, shared::RadianceCell> cells;
+  gpu::WriteBuffer<Stage, std::uint32_t> report;  // how many cells there are
 };
 using RadianceCacheBlendJob =
     gpu::HostPass<RadianceCacheBlendBindings, shared::RadianceCacheConstants>;

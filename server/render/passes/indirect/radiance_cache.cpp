@@ -1,5 +1,7 @@
 #include "render/passes/indirect/radiance_cache.hpp"
 
+#include <cstring>
+
 #include "render/kernels/indirect/radiance_cache.hpp"
 #include "render/passes/formats.hpp"
 #include "render/passes/lights/emissive_points.hpp"
@@ -106,13 +108,22 @@ const kernels::Environment& host_environment(const FrameInputs& in) {
   return *in.moving.environment().view(in.settings.environment.separate_sun).maps.host;
 }
 
+CacheUse radiance_cache_use(const gpu::FramePlan& plan, const RadianceCache& cache) {
+  CacheUse use;
+  std::memcpy(&use.cells, plan.get(cache.report).mapped(), sizeof use.cells);
+  use.most_cells = shared::cache_cells;
+  use.bytes = plan.get(cache.keys).size() + plan.get(cache.cells).size();
+  return use;
+}
+
 RadianceCache update_radiance_cache(gpu::FramePlan& plan, const FrameInputs& in) {
   const RadianceCache cache{
       plan.buffer("radiance_cache.keys", sizeof(std::uint32_t) * shared::cache_words, storage,
                   gpu::Memory::device),
       plan.buffer("radiance_cache.cells", sizeof(shared::RadianceCell) * shared::cache_cells,
                   storage, gpu::Memory::device),
-      draw_emissive_points(plan, in)};
+      draw_emissive_points(plan, in),
+      plan.buffer("radiance_cache.report", sizeof(std::uint32_t), storage, gpu::Memory::readback)};
   const UpdateRays update = generate(plan, in, cache);
   const auto hits = plan.buffer("radiance_cache.hits", sizeof(shared::Hit) * update.rays.capacity,
                                 storage, gpu::Memory::device);
@@ -120,7 +131,8 @@ RadianceCache update_radiance_cache(gpu::FramePlan& plan, const FrameInputs& in)
   shade(plan, in, cache, update.rays, hits);
   light(plan, in, cache, update.shadows);
   plan.pass("radiance_cache.blend", in.program(shaders::radiance_cache_blend))
-      .bind<kernels::RadianceCacheBlendBindings>({.keys = cache.keys, .cells = cache.cells})
+      .bind<kernels::RadianceCacheBlendBindings>(
+          {.keys = cache.keys, .cells = cache.cells, .report = cache.report})
       .constants([in] { return cache_constants(in); })
       .dispatch({shared::cache_cells, 1})
       .host(kernels::radiance_cache_blend);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "render/api/frame_values.hpp"
 #include "render/passes/frame_inputs.hpp"
 #include "render/resources/host_tables.hpp"
 #include "shaders/shared/radiance_cache.h"
@@ -11,7 +12,11 @@ struct RadianceCache {
   gpu::BufferRef keys;    // uint
   gpu::BufferRef cells;   // shared::RadianceCell
   gpu::BufferRef points;  // draw_emissive_points(), of this frame
+  gpu::BufferRef report;  // uint: how many cells there are, for the host
 };
+
+/// Memory of one cache, and how many of its cells a frame that has run has left alive.
+CacheUse radiance_cache_use(const gpu::FramePlan& plan, const RadianceCache& cache);
 
 shared::RadianceCacheConstants cache_constants(const FrameInputs& in);
 
