@@ -68,11 +68,16 @@ float likeness(int a, int b) {
   return like * like * like * like;
 }
 
+/// Stores into half floats round toward zero on some devices, which would darken the image.
+vec4 nearest_halves(vec4 v) {
+  return vec4(unpackHalf2x16(packHalf2x16(v.xy)), unpackHalf2x16(packHalf2x16(v.zw)));
+}
+
 /// Where there is a number that is none, the frame is kept.
 void keep(ivec2 pixel, vec3 seen, vec3 color, float variance) {
   vec4 texel = vec4(color, sqrt(variance));
   if (any(isnan(texel)) || any(isinf(texel))) texel = vec4(seen, 0.0);
-  imageStore(filtered, pixel, clamp(texel, -greatest, greatest));
+  imageStore(filtered, pixel, nearest_halves(clamp(texel, -greatest, greatest)));
 }
 
 void main() {
