@@ -20,6 +20,7 @@ layout(push_constant) uniform Constants {
   float blend;         // least weight of the new frame
   float clip;          // half width of the box in standard deviations
   float anti_flicker;  // 1: on
+  uint hold;           // 1: the history is the result, as in a static view that is path traced
 };
 
 // Least part of `blend` that anti-flicker leaves: a colour that was clamped to the face of the box
@@ -143,6 +144,10 @@ Sample nearest_sample(ivec2 pixel) {
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(uvec2(pixel), shown))) return;
+  if (hold != 0u) {
+    imageStore(resolved, pixel, texelFetch(history, pixel, 0));
+    return;
+  }
   Sample found = nearest_sample(pixel);
   vec3 radiance = imageLoad(hdr, found.pixel).rgb;
   vec2 uv = (vec2(pixel) + 0.5) / vec2(shown);

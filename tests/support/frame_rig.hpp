@@ -46,6 +46,8 @@ class FrameRig {
   void set_settings(const protocol::Settings& settings) { settings_ = settings; }
   /// Number of samples already accumulated.
   void set_accumulated(std::uint32_t samples) { clock_.samples = samples; }
+  /// From now on samples are path traced.
+  void let_reference_take_over() { clock_.hybrid_samples = clock_.samples; }
   /// Time since the previous frame, in seconds.
   void set_seconds(float seconds) { clock_.seconds = seconds; }
   /// Motion of lights and geometry in the next frame.

@@ -11,6 +11,7 @@
 #include "render/passes/indirect/trace_indirect.hpp"
 #include "render/passes/post/accumulate.hpp"
 #include "render/passes/post/filter_mean.hpp"
+#include "render/passes/post/hold_mean.hpp"
 #include "render/passes/post/mean_weight.hpp"
 #include "render/passes/post/present.hpp"
 #include "render/passes/post/temporal_antialias.hpp"
@@ -130,19 +131,21 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   if (from) denoised = denoise(plan, in, gbuffer, *from, noisy);
 
   // What is left takes little time, unless it traces rays.
-  const bool traces_reference = reference == protocol::ReferenceUse::when_static;
-  const bool traces = traces_reference || (in.scene.features & shared::scene_blends) != 0;
+  const bool takes_over = reference == protocol::ReferenceUse::when_static;
+  const bool traces = takes_over || (in.scene.features & shared::scene_blends) != 0;
   if (!traces) plan.finish_frames_from_here();
   const gpu::ImageRef background = draw_skybox(plan, in, gbuffer);
   const Composed composed = compose(plan, in, gbuffer, noisy, denoised, background);
   GBuffer visible = gbuffer;
   visible.motion = blend_surfaces(plan, in, gbuffer, composed, blended);
 
-  const gpu::History accumulated =
-      accumulate(plan, in, traces_reference ? trace_reference(plan, in) : composed.noisy);
+  std::optional<gpu::ImageRef> traced;
+  if (takes_over) traced = trace_reference(plan, in);
+  const gpu::History accumulated = accumulate(plan, in, composed.noisy, traced);
   const Exposure exposure = expose(plan, in, composed.hdr, accumulated.current);
   const gpu::ImageRef resolved = temporal_antialias(plan, in, visible, exposure, composed.hdr);
   FrameOutputs outputs = show(plan, in, accumulated, exposure, resolved);
+  if (takes_over) hold_mean(plan, in, resolved, outputs.mean, outputs.mean_weight);
   outputs.radiance_cache = cache;
   return outputs;
 }

@@ -37,6 +37,16 @@ scene::Scene empty_scene() {
   return scene;
 }
 
+/// `automatic` as one of the others. On processors a path traced sample takes several times as long
+/// as one of the hybrid, whose mean is as similar to the truth as that of a hundred of them.
+void choose_reference(protocol::Settings& settings, bool on_processor) {
+  protocol::Settings::Reference& reference = settings.reference;
+  if (reference.use != protocol::ReferenceUse::automatic) return;
+  const bool traces = !on_processor && settings.indirect.enabled;
+  reference.use = traces ? protocol::ReferenceUse::when_static : protocol::ReferenceUse::off;
+  if (traces) reference.scope = protocol::ReferenceScope::full;
+}
+
 /// Whether lights differ in position and direction alone.
 bool only_move(std::span<const shared::Light> before, std::span<const shared::Light> after) {
   return std::ranges::equal(before, after, [](const shared::Light& a, const shared::Light& b) {
@@ -54,7 +64,9 @@ std::uint32_t drawn_side(std::uint32_t side, float scale) {
 
 struct Renderer::State {
   State(Engine::Parts& engine, std::shared_ptr<const SceneResources> empty)
-      : parts(engine), nothing(std::move(empty)), constants_buffers(engine.device) {}
+      : parts(engine), nothing(std::move(empty)), constants_buffers(engine.device) {
+    choose_reference(settings, parts.device.is_cpu());
+  }
 
   void rebuild_frame_plan();
   VkExtent2D drawn() const;
@@ -69,13 +81,11 @@ struct Renderer::State {
            (shown != present_buffers.output.name && shown != present_buffers.radiance.name);
   }
   std::optional<FloatImage> read(std::string_view name) const;
-  std::uint32_t target_samples() const {
-    return settings.accumulation.enabled
-               ? static_cast<std::uint32_t>(settings.accumulation.max_samples)
-               : 1u;
-  }
+  std::uint32_t target_samples() const;
+  bool reference_takes_over() const;
   void restart_accumulation() {
     clock.samples = 0;
+    clock.hybrid_samples.reset();
     clock.carried_share = 1.0f;
     stale = true;
   }
@@ -104,6 +114,21 @@ struct Renderer::State {
 
   std::unique_ptr<CompiledFrame> compiled;
 };
+
+std::uint32_t Renderer::State::target_samples() const {
+  if (!settings.accumulation.enabled) return 1;
+  const auto most = static_cast<std::uint32_t>(settings.accumulation.max_samples);
+  if (settings.reference.use != protocol::ReferenceUse::when_static) return most;
+  return clock.hybrid_samples.value_or(most) +
+         static_cast<std::uint32_t>(settings.reference.samples);
+}
+
+/// In the next frame, and in those that follow until the view changes.
+bool Renderer::State::reference_takes_over() const {
+  return settings.reference.use == protocol::ReferenceUse::when_static &&
+         settings.accumulation.enabled && !clock.hybrid_samples && clock.samples > 0 &&
+         clock.samples >= static_cast<std::uint32_t>(settings.accumulation.max_samples);
+}
 
 // The old plan is freed first: two of them may not fit into memory.
 void Renderer::State::rebuild_frame_plan() {
@@ -274,7 +299,9 @@ protocol::Result<void> Renderer::set_settings(const protocol::Settings& settings
   if (const auto known = check_buffer_name(settings.view.buffer, "view.buffer"); !known) {
     return known;
   }
-  if (settings != state_->settings) state_->change_settings(settings);
+  protocol::Settings chosen = settings;
+  choose_reference(chosen, state_->parts.device.is_cpu());
+  if (chosen != state_->settings) state_->change_settings(chosen);
   return {};
 }
 
@@ -313,6 +340,7 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
   if (!state.has_previous) moves |= state.moving->advance();
   const auto posed = std::chrono::steady_clock::now();
   if (!state.settings.accumulation.enabled) state.clock.samples = 0;
+  if (state.reference_takes_over()) state.clock.hybrid_samples = state.clock.samples;
   const shared::FrameConstants before = state.constants;
   const bool had_previous = state.has_previous;
   const std::uint32_t age = std::exchange(state.clock.age, had_previous ? state.clock.age + 1 : 0);

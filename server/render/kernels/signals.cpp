@@ -1,6 +1,8 @@
 #include "render/kernels/signals.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <glm/gtc/packing.hpp>
 
 #include "render/kernels/simd/rows.hpp"
 
@@ -60,6 +62,22 @@ void accumulate(const AccumulateJob& job) {
         start_mean(sample, job.width, mean);
       } else {
         add_to_mean(sample, previous, job.width, job.constants.weight, mean);
+      }
+    }
+  });
+}
+
+void hold_mean(const HoldMeanJob& job) {
+  for_each_band(static_cast<int>(job.constants.shown.y), [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      const auto row = static_cast<std::uint32_t>(y);
+      const auto* mean = job.mean.row<const std::uint32_t>(row);
+      const float* const weight = job.mean_weight.row<const float>(row);
+      float* color = job.resolved.row<float>(row);
+      for (std::uint32_t x = 0; x < job.constants.shown.x; ++x, mean += 2, color += 4) {
+        const glm::vec2 first_two = glm::unpackHalf2x16(mean[0]);
+        const glm::vec3 kept(first_two, glm::unpackHalf2x16(mean[1]).x);
+        for (int c = 0; c < 3; ++c) color[c] += (kept[c] - color[c]) * weight[x];
       }
     }
   });

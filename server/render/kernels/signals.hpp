@@ -28,6 +28,19 @@ struct AccumulateConstants {
 using AccumulateJob = gpu::HostPass<AccumulateBindings, AccumulateConstants>;
 void accumulate(const AccumulateJob& job);
 
+/// The filtered mean blended into the frame that is kept: shaders/post/hold_mean.comp.
+template <class Stage>
+struct HoldMeanBindings {
+  gpu::Read<Stage> mean;           // rgba16f
+  gpu::Read<Stage> mean_weight;    // r32f
+  gpu::ReadWrite<Stage> resolved;  // rgba32f
+};
+struct HoldMeanConstants {
+  glm::uvec2 shown;  // size of all images, pixels
+};
+using HoldMeanJob = gpu::HostPass<HoldMeanBindings, HoldMeanConstants>;
+void hold_mean(const HoldMeanJob& job);
+
 /// Scatters the results of a stream of visibility rays to their pixels:
 /// shaders/visibility/visibility_resolve.comp.
 template <class Stage>

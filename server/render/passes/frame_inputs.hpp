@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "gpu/frame_plan/frame_plan.hpp"
 #include "protocol/settings/settings.hpp"
@@ -25,6 +26,8 @@ struct FrameClock {
   /// How many samples a static view's histories brought along, as a part of what they count: less
   /// than 1 where they come from frames that were drawn smaller.
   float carried_share = 1.0f;
+  /// Samples of the hybrid before the reference took over in a static view; absent: it has not.
+  std::optional<std::uint32_t> hybrid_samples;
 
   /// Whether so few frames have passed that all light is still uncertain.
   static constexpr std::uint32_t young_frames = 24;

@@ -25,7 +25,9 @@ RawJson ReferenceMode::stop_patch() const {
   json patch{{"reference", {{"use", "off"}}}};
   if (restored_) {
     const auto& [reference, accumulation] = *restored_;
-    if (reference.use == ReferenceUse::when_static) patch["reference"]["use"] = "when_static";
+    if (reference.use != ReferenceUse::always) {
+      patch["reference"]["use"] = protocol::enum_name(reference.use);
+    }
     patch["reference"]["scope"] = protocol::enum_name(reference.scope);
     patch["accumulation"] = {{"enabled", accumulation.enabled},
                              {"max_samples", accumulation.max_samples}};

@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <glm/gtc/packing.hpp>
 #include <limits>
 
 #include "render/kernels/signals.hpp"
 #include "render/passes/denoise/denoise_visibility.hpp"
 #include "render/passes/post/accumulate.hpp"
+#include "render/passes/post/hold_mean.hpp"
 #include "tests/gpu/support/kernel_comparison.hpp"
 
 namespace heliograph::test {
@@ -52,6 +54,40 @@ TEST_P(SignalKernels, AccumulateMatchesShader) {
     EXPECT_LT(result.max, 1e-6) << samples;
     EXPECT_GT(result.magnitude, 1.0) << samples;
   }
+}
+
+TEST_P(SignalKernels, HoldMeanMatchesShader) {
+  protocol::Settings settings;
+  settings.accumulation.max_samples = 3;
+  FrameRig rig(SceneBuilder().build(), camera, {.extent = GetParam(), .settings = settings});
+  RandomFrame random(rig);
+  const std::size_t pixels = std::size_t{GetParam().width} * GetParam().height;
+  std::vector<glm::uvec2> mean;
+  std::vector<float> weight;
+  std::vector<glm::vec4> frame;
+  for (std::size_t i = 0; i < pixels; ++i) {
+    mean.emplace_back(glm::packHalf2x16({random.unit(), random.unit()}),
+                      glm::packHalf2x16({random.unit(), 0.0f}));
+    weight.push_back(random.unit());
+    frame.emplace_back(random.unit(), 2.0f, 3.0f, 7.0f);
+  }
+  const auto mean_image = rig.input("mean", VK_FORMAT_R16G16B16A16_SFLOAT, mean);
+  const auto weight_image = rig.input("weight", VK_FORMAT_R32_SFLOAT, weight);
+  const auto run = [&](const char* name, bool host) {
+    const auto image = rig.input(name, VK_FORMAT_R32G32B32A32_SFLOAT, frame);
+    render::hold_mean(rig.plan(), with_host_kernels(rig, host), image, mean_image, weight_image);
+    return image;
+  };
+  const auto shader = run("shader", false), host = run("host", true);
+  rig.set_accumulated(1);
+  rig.run();
+  EXPECT_EQ(texel(rig.read(host), 0, 0), frame[0]) << "the mean is not complete";
+  rig.set_accumulated(2);
+  rig.run();
+  EXPECT_LT(compare(rig.read(shader), rig.read(host)).max, 1e-6);
+  const float expected = glm::mix(frame[0].x, glm::unpackHalf2x16(mean[0].x).x, weight[0]);
+  EXPECT_NEAR(texel(rig.read(host), 0, 0).x, expected, 1e-6f);
+  EXPECT_EQ(texel(rig.read(host), 0, 0).w, 7.0f);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, SignalKernels,

@@ -33,16 +33,19 @@ class FrameMemory : public testing::Test {
   struct Frame {
     Frame(const protocol::Settings& settings, VkExtent2D extent, bool shares)
         : rig(sphere_and_sun(), look({0, 0.4f, 4}, {0, 0, 0}),
-              {.extent = extent, .settings = settings, .tracer = "embree"}) {
+              {.extent = extent, .settings = settings, .tracer = "embree"}),
+          takes_over(settings.reference.use == protocol::ReferenceUse::when_static) {
       if (shares) rig.plan().share_memory();
       const auto outputs = render::declare_frame(rig.plan(), rig.inputs());
       rig.plan().read_back(outputs.output);
     }
     void run(int number) {
       if (number > 0) rig.set_view(look({0.1f * number, 0.4f, 4}, {0, 0, 0}), number);
+      if (takes_over && number > 1) rig.let_reference_take_over();
       rig.run();
     }
     FrameRig rig;
+    bool takes_over;
   };
 
   static double bytes_per_pixel(const protocol::Settings& settings, bool shares) {

@@ -22,6 +22,7 @@ scene::Camera camera(const View& view, float turn) {
 
 RigOptions options(const View& view) {
   RigOptions made{.extent = view.extent, .shown = view.shown};
+  made.settings.reference.use = protocol::ReferenceUse::when_static;
   made.settings.antialiasing.anti_flicker = view.anti_flicker;
   made.settings.exposure.compensation = 0.7f;
   return made;
@@ -47,6 +48,11 @@ class KernelComparison {
 
   FrameRig& rig() { return rig_; }
   ErrorStatistics statistics() { return compare(rig_.read(shader_), rig_.read(host_)); }
+
+  /// Of the shader and of the host kernel.
+  std::pair<render::FloatImage, render::FloatImage> images() {
+    return {rig_.read(shader_), rig_.read(host_)};
+  }
 
   /// A frame of different noise from a slightly rotated camera.
   void next() {
@@ -92,6 +98,17 @@ TEST_F(TemporalAntialiasKernel, MatchesShader) {
       }
     }
   }
+}
+
+TEST_F(TemporalAntialiasKernel, HoldsTheHistoryWhileSamplesArePathTraced) {
+  KernelComparison comparison({});
+  comparison.rig().run();
+  comparison.next();
+  const auto before = comparison.images();
+  comparison.rig().let_reference_take_over();
+  comparison.next();
+  EXPECT_EQ(comparison.images().first.rgba, before.first.rgba) << "shader";
+  EXPECT_EQ(comparison.images().second.rgba, before.second.rgba) << "host kernel";
 }
 
 TEST_F(TemporalAntialiasKernel, MatchesShaderAtAnySize) {

@@ -65,12 +65,13 @@ std::string shader_of(const std::string& timer, const std::set<std::string>& ste
 }
 
 std::vector<protocol::Settings> all_settings() {
-  std::vector<protocol::Settings> all(5);
+  std::vector<protocol::Settings> all(6);
   all[1].specular.half_resolution = all[1].shadow_blur.half_resolution = true;
   all[1].indirect.enabled = true;
   all[2].reference.use = protocol::ReferenceUse::always;
   all[3].reference.use = protocol::ReferenceUse::always;
   all[3].reference.scope = protocol::ReferenceScope::full;
+  all[5].reference.use = protocol::ReferenceUse::when_static;
   for (const char* assignment :
        {"gbuffer.source=raster", "reinhard.mode=exact", "exposure.mode=automatic",
         "shadow_temporal.rectification=percentile", "specular_temporal.rectification=percentile",

@@ -244,18 +244,89 @@ TEST(FullReference, TracersAgree) {
   for (const double other : mean) EXPECT_NEAR(other / mean[0], 1.0, 1e-3);
 }
 
-TEST(ReferenceWhenStatic, StaticCameraConvergesToReference) {
-  RendererRig rig(reference_scene(0.4f), make_environment(128, reference_sky),
-                  look({0, 2, 6}, {0, 0.7f, 0}), 64, 36);
-  const double expected = mean_luminance(rig, traced(ReferenceScope::full), 64, "static_full");
+/// A static view of the hybrid that the full reference takes over after `hybrid` samples.
+protocol::Settings taken_over(int hybrid, int traced_samples) {
+  protocol::Settings settings;
+  settings.reference.use = ReferenceUse::when_static;
+  settings.reference.scope = ReferenceScope::full;
+  settings.reference.samples = traced_samples;
+  settings.accumulation.max_samples = hybrid;
+  return settings;
+}
+
+class ReferenceWhenStatic : public testing::Test {
+ protected:
+  RendererRig rig_{reference_scene(0.4f), make_environment(128, reference_sky),
+                   look({0, 2, 6}, {0, 0.7f, 0}), 64, 36};
+};
+
+TEST_F(ReferenceWhenStatic, StaticCameraConvergesToReference) {
+  const double expected = mean_luminance(rig_, traced(ReferenceScope::full), 64, "static_full");
   protocol::Settings settings = traced(ReferenceScope::full);
   settings.reference.use = ReferenceUse::when_static;
-  settings.accumulation.blend_samples = 4;
-  EXPECT_NEAR(mean_luminance(rig, settings, 65, "static_hybrid"), expected, 0.01 * expected);
-  // Raising max_samples continues the accumulation.
-  settings.accumulation.max_samples = 70;
-  rig.apply(settings);
-  EXPECT_EQ(rig.renderer.render().samples, 66u);
+  settings.reference.samples = 64;
+  settings.accumulation.max_samples = 8;
+  EXPECT_NEAR(mean_luminance(rig_, settings, 72, "static_hybrid"), expected, 0.01 * expected);
+  EXPECT_FALSE(rig_.renderer.needs_frame());
+  // More samples continue the accumulation.
+  settings.reference.samples = 70;
+  rig_.apply(settings);
+  EXPECT_EQ(rig_.renderer.render().samples, 73u);
+  settings.accumulation.max_samples = 100;
+  rig_.apply(settings);
+  EXPECT_EQ(rig_.renderer.render().samples, 74u);
+  EXPECT_NEAR(mean_luminance(rig_, settings, 78, "static_more"), expected, 0.01 * expected);
+}
+
+TEST_F(ReferenceWhenStatic, TakesOverWithoutAVisibleJump) {
+  rig_.apply(taken_over(12, 8));
+  const render::Frame last = rig_.accumulate(12);
+  const render::Frame first = rig_.renderer.render();
+  ASSERT_EQ(first.samples, 13u);
+  EXPECT_LE(difference(first, last).maximum, 1.0) << "what was shown stays";
+  EXPECT_GT(ssim(rig_.accumulate(20), last), 0.97);
+}
+
+TEST_F(ReferenceWhenStatic, GetsMoreSimilarToTheReference) {
+  rig_.apply(traced(ReferenceScope::full));
+  const render::Frame truth = rig_.accumulate(256);
+  rig_.apply(taken_over(24, 128));
+  double before = ssim(rig_.accumulate(24), truth);
+  const double hybrid = before;
+  for (const std::uint32_t samples : {28u, 40u, 88u, 152u}) {
+    const double now = ssim(rig_.accumulate(samples), truth);
+    EXPECT_GT(now, before - 0.002) << samples;
+    before = now;
+  }
+  EXPECT_GT(before, hybrid);
+}
+
+TEST_F(ReferenceWhenStatic, MovingTheCameraReturnsToTheHybrid) {
+  rig_.apply(taken_over(4, 8));
+  rig_.accumulate(12);
+  rig_.renderer.set_camera(look({0.1f, 2, 6}, {0, 0.7f, 0}));
+  rig_.renderer.render();
+  for (const render::PassTime& pass : rig_.renderer.render().passes) {
+    EXPECT_NE(pass.name, "reference.camera");
+  }
+}
+
+TEST_F(ReferenceWhenStatic, IsAutomaticOnGpusWithIndirectLight) {
+  protocol::Settings settings;
+  settings.accumulation.max_samples = 2;
+  settings.reference.samples = 3;
+  rig_.apply(settings);
+  const bool gpu = !engine("auto").parts().device.is_cpu();
+  rig_.accumulate(2);
+  EXPECT_EQ(rig_.renderer.needs_frame(), gpu);
+  if (gpu) {
+    rig_.accumulate(5);
+    EXPECT_FALSE(rig_.renderer.needs_frame());
+  }
+  settings.indirect.enabled = false;
+  rig_.apply(settings);
+  rig_.accumulate(2);
+  EXPECT_FALSE(rig_.renderer.needs_frame());
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "render/kernels/post/temporal_antialias.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "render/kernels/simd/rows.hpp"
@@ -383,8 +384,22 @@ namespace heliograph::render::kernels {
 
 HWY_EXPORT(antialias_rows);
 
+namespace {
+
+/// The history as it is.
+void copy_rows(const AntialiasJob& job, int first, int last) {
+  const std::size_t floats = 4 * std::size_t{job.constants.shown.x};
+  for (int y = first; y < last; ++y) {
+    const auto row = static_cast<std::uint32_t>(y);
+    std::copy_n(job.history.row<const float>(row), floats, job.resolved.row<float>(row));
+  }
+}
+
+}  // namespace
+
 void temporal_antialias(const AntialiasJob& job) {
   for_each_band(static_cast<int>(job.constants.shown.y), [&](int first, int last) {
+    if (job.constants.hold) return copy_rows(job, first, last);
     HWY_DYNAMIC_DISPATCH(antialias_rows)(job, first, last);
   });
 }

@@ -18,6 +18,7 @@ struct AntialiasConstants {
   float blend;         // least weight of the new frame
   float clip;          // half width of the box in standard deviations
   float anti_flicker;  // 1: on
+  std::uint32_t hold;  // 1: the history is the result, as in a static view that is path traced
 };
 using AntialiasJob = FrameJob<AntialiasBindings, AntialiasConstants>;
 

@@ -10,22 +10,29 @@
 namespace heliograph::render {
 
 std::uint32_t samples_of_mean(const FrameInputs& in) {
-  const bool late = (in.settings.reference.use == protocol::ReferenceUse::when_static &&
-                     in.settings.accumulation.blend_samples > 0) ||
-                    !in.clock.first_counts;
-  return late ? std::max(in.clock.samples, 1u) : in.clock.samples + 1;
+  if (in.clock.hybrid_samples) return in.clock.samples - *in.clock.hybrid_samples + 1;
+  return in.clock.first_counts ? in.clock.samples + 1 : std::max(in.clock.samples, 1u);
 }
 
-gpu::History accumulate(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef sample) {
+gpu::History accumulate(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef sample,
+                        std::optional<gpu::ImageRef> traced) {
   const auto history = plan.history(accumulate_buffers.mean.name, VK_FORMAT_R32G32B32A32_SFLOAT);
-  plan.pass("accumulate", in.program(shaders::accumulate))
-      .bind<kernels::AccumulateBindings>(
-          {.sample = sample, .previous = history.previous, .mean = history.current})
-      .constants([in] {
-        return kernels::AccumulateConstants{1.0f / static_cast<float>(samples_of_mean(in))};
-      })
-      .dispatch(gpu::each_pixel())
-      .host(kernels::accumulate);
+  const auto add = [&](gpu::ImageRef added) {
+    return plan.pass("accumulate", in.program(shaders::accumulate))
+        .bind<kernels::AccumulateBindings>(
+            {.sample = added, .previous = history.previous, .mean = history.current})
+        .constants([in] {
+          return kernels::AccumulateConstants{1.0f / static_cast<float>(samples_of_mean(in))};
+        })
+        .dispatch(gpu::each_pixel())
+        .host(kernels::accumulate);
+  };
+  if (!traced) {
+    add(sample);
+    return history;
+  }
+  add(sample).when([in] { return !traces_reference(in); });
+  add(*traced).when([in] { return traces_reference(in); });
   return history;
 }
 

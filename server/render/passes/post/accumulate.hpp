@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 
 #include "gpu/frame_plan/frame_plan.hpp"
 #include "render/views/aspects.hpp"
@@ -23,8 +24,10 @@ inline constexpr struct AccumulateBuffers {
 } accumulate_buffers{};
 
 /// The mean of every frame's `sample` since the view last changed: linear radiance, and in w the
-/// variance of their luminance (Welford 1962).
-gpu::History accumulate(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef sample);
+/// variance of their luminance (Welford 1962). `traced` is the reference's sample, whose
+/// mean replaces the other where traces_reference().
+gpu::History accumulate(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef sample,
+                        std::optional<gpu::ImageRef> traced = {});
 
 /// How many samples that is, with this frame's.
 std::uint32_t samples_of_mean(const FrameInputs& in);

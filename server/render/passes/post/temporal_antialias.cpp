@@ -2,6 +2,7 @@
 
 #include "render/kernels/post/temporal_antialias.hpp"
 #include "render/passes/frame_inputs.hpp"
+#include "render/passes/reference/reference.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
@@ -18,8 +19,10 @@ gpu::ImageRef temporal_antialias(gpu::FramePlan& plan, const FrameInputs& in,
                                          .history = history.previous,
                                          .exposure = exposure.state,
                                          .resolved = history.current})
-      .constants([&s = in.settings.antialiasing, shown = size_of(in.shown)] {
-        return kernels::AntialiasConstants{shown, s.blend, s.clip, s.anti_flicker ? 1.0f : 0.0f};
+      .constants([in] {
+        const protocol::Settings::Antialiasing& s = in.settings.antialiasing;
+        return kernels::AntialiasConstants{size_of(in.shown), s.blend, s.clip,
+                                           s.anti_flicker ? 1.0f : 0.0f, traces_reference(in)};
       })
       .dispatch(in.shown)
       .host(kernels::temporal_antialias, in.constants);

@@ -11,13 +11,6 @@
 namespace heliograph::render {
 namespace {
 
-/// Whether this frame's sample is traced: not in the first frame after a change where the hybrid
-/// alone is shown.
-bool traces_reference(const FrameInputs& in) {
-  return in.settings.reference.use == protocol::ReferenceUse::always || in.clock.samples > 0 ||
-         in.settings.accumulation.blend_samples == 0;
-}
-
 constexpr std::uint32_t passed_layers = most_blended;  // that a path goes straight on through
 using formats::storage;
 
@@ -155,6 +148,11 @@ class Wavefront {
 };
 
 }  // namespace
+
+bool traces_reference(const FrameInputs& in) {
+  return in.settings.reference.use == protocol::ReferenceUse::always ||
+         in.clock.hybrid_samples.has_value();
+}
 
 gpu::ImageRef trace_reference(gpu::FramePlan& plan, const FrameInputs& in) {
   const protocol::Settings::Reference& settings = in.settings.reference;

@@ -12,6 +12,9 @@ inline constexpr struct ReferenceBuffers {
                              "One sample of the path tracer: linear radiance."};
 } reference_buffers{};
 
+/// Whether this frame's sample is path traced: with `when_static` after those of the hybrid.
+bool traces_reference(const FrameInputs& in);
+
 /// One sample per pixel of the ground truth, as settings.reference asks for it: the hybrid's own
 /// light paths or full global illumination, from the camera's ray on by nothing but traced rays.
 /// Its surfaces, lights, BRDF, camera and random numbers are the hybrid's; its code is not. Linear
