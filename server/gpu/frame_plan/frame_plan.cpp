@@ -49,7 +49,7 @@ ImageRef FramePlan::image(std::string_view name, VkFormat format, VkImageUsageFl
                (depth ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT : VK_IMAGE_USAGE_STORAGE_BIT);
   desc.mapped = device_.is_cpu() && !depth;
   Resource resource{.name = std::string(name), .size = size, .image_desc = std::move(desc)};
-  if (!shares_memory_) make(resource, {});
+  if (!makes_later_) make(resource, {});
   return {add(std::move(resource))};
 }
 
@@ -67,14 +67,14 @@ History FramePlan::history(std::string_view name, VkFormat format, VkImageUsageF
                                               .part = Resource::Part::previous,
                                               .size = size,
                                               .image_desc = std::move(desc)});
-  if (!shares_memory_) make_history(current, {});
+  if (!makes_later_) make_history(current, {});
   return {{current}, {previous}};
 }
 
 BufferRef FramePlan::buffer(std::string name, VkDeviceSize size, VkBufferUsageFlags usage,
                             Memory memory) {
   Resource resource{.name = std::move(name), .buffer_desc = {{size, usage, memory}}};
-  if (!shares_memory_) make(resource, {});
+  if (!makes_later_) make(resource, {});
   return {add(std::move(resource))};
 }
 
@@ -181,8 +181,13 @@ bool FramePlan::is_history(ImageRef image) const {
 }
 
 void FramePlan::compile() {
-  make_histories();
-  make_resources();
+  device_.submit_once([this](VkCommandBuffer commands) {
+    setup_ = commands;
+    make_histories();
+    make_in_blocks();
+    make_resources();
+  });
+  setup_ = VK_NULL_HANDLE;
   for (Pass& pass : passes_) {
     if (pass.is_host_only()) {
       pass.program = nullptr;
@@ -271,7 +276,7 @@ std::vector<std::uint8_t> FramePlan::read() const {
 }
 
 void FramePlan::reset(const History& history) {
-  for (const Image* image : resources_[history.current.index].images) image->clear();
+  for (const Image* image : resources_[history.current.index].images) image->clear(setup_);
 }
 
 }  // namespace heliograph::gpu

@@ -180,12 +180,15 @@ class FramePlan {
   void use_host_kernels(bool use) { host_kernels_ = use && device_.is_cpu(); }
   bool uses_host_kernels() const { return host_kernels_; }
 
-  /// On devices that are processors, resources declared from now on share memory where no pass
-  /// needs both. They do not exist before compile(). Images and buffers of Memory::device keep
-  /// their content for as long as passes read them; histories, and images for keep(), until the
-  /// next frame begins. A history that only passes under a condition write has no defined content
-  /// after frames without them.
-  void share_memory() { shares_memory_ = device_.is_cpu(); }
+  /// Resources declared from now on lie in few blocks of memory, which they share on devices that
+  /// are processors where no pass needs both. They do not exist before compile(). Images and
+  /// buffers of Memory::device keep their content for as long as passes read them; histories, and
+  /// images for keep(), until the next frame begins. A history that only passes under a condition
+  /// write has no defined content after frames without them.
+  void share_memory() {
+    makes_later_ = true;
+    shares_memory_ = device_.is_cpu();
+  }
   /// Before compile(): an image that can be read after every frame.
   void keep(ImageRef image) { kept_.push_back(image.index); }
   /// Before compile(): an image that no pass uses in frames that skip those that write it. It has
@@ -296,6 +299,8 @@ class FramePlan {
   void make_history(std::uint32_t current, const std::array<MemoryPlace, 2>& places);
   /// What is left to make.
   void make_histories();
+  /// Where memory is not shared.
+  void make_in_blocks();
   void make_resources();
   void release_shared();
   /// Absent for what needs memory of its own.
@@ -369,7 +374,9 @@ class FramePlan {
   bool keeps_images_ = false;
   std::uint32_t parity_ = 0;
   bool host_kernels_ = false;
+  bool makes_later_ = false;  // resources: not before compile()
   bool shares_memory_ = false;
+  VkCommandBuffer setup_ = VK_NULL_HANDLE;  // of images that are being made; null: each of its own
   bool compiled_ = false;
 };
 

@@ -1,6 +1,7 @@
 // Which resources of a plan share memory, and how they are made.
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -33,9 +34,9 @@ void FramePlan::make(Resource& resource, const std::array<MemoryPlace, 2>& place
       image = resource.owned_images[0];
       buffer = resource.owned_buffers[0];
     } else if (resource.image_desc) {
-      image = std::make_shared<const Image>(device_, *resource.image_desc, places[parity]);
+      image = std::make_shared<const Image>(device_, *resource.image_desc, places[parity], setup_);
       // Passes may read what the passes that write it have skipped since the plan was made.
-      if (image->host() && !image->block()) image->clear();
+      if (image->host() && !image->block()) image->clear(setup_);
     } else if (const auto& desc = resource.buffer_desc) {
       buffer = std::make_shared<const Buffer>(device_, resource.name, desc->size, desc->usage,
                                               desc->memory, places[parity]);
@@ -50,7 +51,7 @@ void FramePlan::make_history(std::uint32_t current, const std::array<MemoryPlace
   Resource& read = resources_[current + 1];
   for (std::size_t parity = 0; parity < 2; ++parity) {
     auto& image = written.owned_images[parity];
-    image = std::make_shared<const Image>(device_, *written.image_desc, places[parity]);
+    image = std::make_shared<const Image>(device_, *written.image_desc, places[parity], setup_);
     written.images[parity] = read.images[parity ^ 1] = image.get();
   }
   reset({{current}, {current + 1}});
@@ -142,6 +143,7 @@ Lifetime FramePlan::history_lifetime(std::uint32_t index) const {
 // other what it reads. What is written at the same time lies side by side: so does the memory that
 // is free until then.
 void FramePlan::make_histories() {
+  if (!shares_memory_) return;
   std::vector<std::uint32_t> pending;
   for (std::uint32_t i = 0; i < resources_.size(); ++i) {
     if (resources_[i].part == Resource::Part::current && !resources_[i].is_made()) {
@@ -169,6 +171,52 @@ void FramePlan::make_histories() {
   }
   for (const auto& [i, offset] : history_offsets_) {
     make_history(i, {{{history_blocks_[0], offset}, {history_blocks_[1], offset}}});
+  }
+}
+
+// An allocation takes a GPU's driver up to a millisecond, and there are more than a hundred
+// resources. Images and buffers may not lie side by side.
+void FramePlan::make_in_blocks() {
+  if (shares_memory_) return;
+  struct Group {
+    std::vector<std::uint32_t> resources;
+    std::vector<Lifetime> needed;  // one for each, two for a history
+    VkMemoryRequirements all{};
+  };
+  std::map<std::pair<bool, std::uint32_t>, Group> groups;  // images or buffers, types of memory
+  for (std::uint32_t i = 0; i < resources_.size(); ++i) {
+    const Resource& resource = resources_[i];
+    if (resource.is_made() || resource.part == Resource::Part::previous) continue;
+    const bool image = resource.image_desc.has_value();
+    if (!image && resource.buffer_desc->memory != Memory::device) continue;
+    const VkMemoryRequirements needed = requirements_of(device_, resource);
+    Group& group = groups[{image, needed.memoryTypeBits}];
+    group.resources.push_back(i);
+    group.needed.insert(group.needed.end(), resource.part == Resource::Part::current ? 2 : 1,
+                        {.bytes = needed.size, .alignment = needed.alignment});
+    group.all = {0, std::max(group.all.alignment, needed.alignment), needed.memoryTypeBits};
+  }
+  for (auto& [kind, group] : groups) {
+    const MemoryPlan plan = plan_memory(group.needed, most_block_bytes);
+    std::vector<std::shared_ptr<const MemoryBlock>> blocks;
+    for (const std::uint64_t bytes : plan.block_bytes) {
+      group.all.size = bytes;
+      blocks.push_back(
+          std::make_shared<const MemoryBlock>(device_, group.all, "a frame's resources"));
+    }
+    auto next = plan.places.begin();
+    const auto place = [&] {
+      const MemoryPlan::Place& found = *next++;
+      return MemoryPlace{blocks[found.block], found.offset};
+    };
+    for (const std::uint32_t i : group.resources) {
+      const MemoryPlace even = place();
+      if (resources_[i].part == Resource::Part::current) {
+        make_history(i, {even, place()});
+      } else {
+        make(resources_[i], {even, even});
+      }
+    }
   }
 }
 

@@ -40,7 +40,7 @@ Buffer::Buffer(const Device& device, std::string name, VkDeviceSize size, VkBuff
     block_ = std::move(place.block);
     check(vkBindBufferMemory(device.handle(), handle_, block_->handle(), place.offset),
           "bind a buffer's place");
-    mapped_ = block_->mapped() + place.offset;
+    mapped_ = block_->mapped(place.offset);
     return;
   }
   VkMemoryRequirements requirements;

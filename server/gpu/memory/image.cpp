@@ -102,7 +102,8 @@ VkMemoryRequirements Image::requirements(const Device& device, const ImageDesc& 
 }
 
 // A constructor that delegates leaves what it has made to the destructor when it fails half way.
-Image::Image(const Device& device, ImageDesc desc, MemoryPlace place) : Image() {
+Image::Image(const Device& device, ImageDesc desc, MemoryPlace place, VkCommandBuffer setup)
+    : Image() {
   device_ = &device;
   desc_ = std::move(desc);
   const VkImageCreateInfo info = image_info(desc_);
@@ -113,7 +114,16 @@ Image::Image(const Device& device, ImageDesc desc, MemoryPlace place) : Image() 
   if (desc_.usage & VK_IMAGE_USAGE_STORAGE_BIT) {
     for (std::uint32_t i = 0; i < desc_.levels; ++i) level_views_.push_back(make_view(i, 1, true));
   }
-  initialise_layout();
+  record_now_or_into(setup, [this](VkCommandBuffer commands) { initialise_layout(commands); });
+}
+
+void Image::record_now_or_into(VkCommandBuffer setup,
+                               const std::function<void(VkCommandBuffer)>& record) const {
+  if (setup) {
+    record(setup);
+  } else {
+    device_->submit_once(record);
+  }
 }
 
 void Image::bind_memory(MemoryPlace place) {
@@ -122,7 +132,8 @@ void Image::bind_memory(MemoryPlace place) {
     block_ = std::move(place.block);
     check(vkBindImageMemory(device_->handle(), handle_, block_->handle(), place.offset),
           "bind an image's place");
-    address = block_->mapped() + place.offset;
+    address = block_->mapped(place.offset);
+    if (!desc_.mapped) return;
   } else {
     VkMemoryRequirements requirements;
     vkGetImageMemoryRequirements(device_->handle(), handle_, &requirements);
@@ -176,26 +187,24 @@ VkImageView Image::make_view(std::uint32_t first_level, std::uint32_t levels, bo
   return view;
 }
 
-void Image::initialise_layout() const {
-  device_->submit_once([&](VkCommandBuffer commands) {
-    VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
-    barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-    barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
-    barrier.oldLayout = VK_IMAGE_LAYOUT_UNDEFINED;
-    barrier.newLayout = VK_IMAGE_LAYOUT_GENERAL;
-    barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
-    barrier.image = handle_;
-    barrier.subresourceRange = {aspect_of(desc_.format), 0, desc_.levels, 0, desc_.layers};
-    VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
-    dependency.imageMemoryBarrierCount = 1;
-    dependency.pImageMemoryBarriers = &barrier;
-    vkCmdPipelineBarrier2(commands, &dependency);
-  });
+void Image::initialise_layout(VkCommandBuffer commands) const {
+  VkImageMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER_2};
+  barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  barrier.dstStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+  barrier.dstAccessMask = VK_ACCESS_2_MEMORY_READ_BIT | VK_ACCESS_2_MEMORY_WRITE_BIT;
+  barrier.oldLayout = VK_IMAGE_LAYOUT_UNDEFINED;
+  barrier.newLayout = VK_IMAGE_LAYOUT_GENERAL;
+  barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+  barrier.image = handle_;
+  barrier.subresourceRange = {aspect_of(desc_.format), 0, desc_.levels, 0, desc_.layers};
+  VkDependencyInfo dependency{VK_STRUCTURE_TYPE_DEPENDENCY_INFO};
+  dependency.imageMemoryBarrierCount = 1;
+  dependency.pImageMemoryBarriers = &barrier;
+  vkCmdPipelineBarrier2(commands, &dependency);
 }
 
-void Image::clear() const {
-  device_->submit_once([&](VkCommandBuffer commands) {
+void Image::clear(VkCommandBuffer setup) const {
+  record_now_or_into(setup, [this](VkCommandBuffer commands) {
     const VkImageSubresourceRange range{aspect_of(desc_.format), 0, desc_.levels, 0, desc_.layers};
     const VkClearColorValue zero{};
     vkCmdClearColorImage(commands, handle_, VK_IMAGE_LAYOUT_GENERAL, &zero, 1, &range);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -37,7 +38,10 @@ struct HostView {
 class Image {
  public:
   Image() = default;
-  Image(const Device& device, ImageDesc desc, MemoryPlace place = {});
+  /// Its first commands go into `setup`, if given, which runs before anything else uses the image;
+  /// otherwise they run at once.
+  Image(const Device& device, ImageDesc desc, MemoryPlace place = {},
+        VkCommandBuffer setup = VK_NULL_HANDLE);
   ~Image();
   Image(Image&& other) noexcept { swap(other); }
   Image& operator=(Image&& other) noexcept {
@@ -59,8 +63,8 @@ class Image {
   VkDeviceSize own_bytes() const { return own_bytes_; }
   explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
 
-  /// Zeroes every level and layer; waits.
-  void clear() const;
+  /// Zeroes every level and layer, in `setup`, if given; otherwise waits.
+  void clear(VkCommandBuffer setup = VK_NULL_HANDLE) const;
   /// Copies tightly packed levels, level 0 first; waits.
   void upload(std::span<const std::byte> bytes) const;
   /// Level 0, layer `layer`, tightly packed; waits.
@@ -73,7 +77,9 @@ class Image {
   VkImageView make_view(std::uint32_t first_level, std::uint32_t levels, bool storage) const;
   /// Binds memory and maps it, where the image is to be mapped.
   void bind_memory(MemoryPlace place);
-  void initialise_layout() const;
+  void initialise_layout(VkCommandBuffer commands) const;
+  void record_now_or_into(VkCommandBuffer setup,
+                          const std::function<void(VkCommandBuffer)>& record) const;
 
   const Device* device_ = nullptr;
   ImageDesc desc_;

@@ -7,7 +7,9 @@ MemoryBlock::MemoryBlock(const Device& device, const VkMemoryRequirements& requi
     : device_(device), size_(requirements.size) {
   constexpr VkMemoryPropertyFlags host =
       VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-  memory_ = device.allocate(requirements, host, VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, name);
+  memory_ = device.allocate(requirements, device.is_cpu() ? host : 0,
+                            VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT, name);
+  if (!device.is_cpu()) return;
   void* address = nullptr;
   const VkResult mapped = vkMapMemory(device.handle(), memory_, 0, VK_WHOLE_SIZE, 0, &address);
   if (mapped != VK_SUCCESS) vkFreeMemory(device.handle(), memory_, nullptr);

@@ -8,7 +8,7 @@
 
 namespace heliograph::gpu {
 
-/// Memory of the device that several resources share, mapped.
+/// Memory of the device that several resources share; mapped on devices that are processors.
 class MemoryBlock {
  public:
   /// `requirements`: what all of them allow and ask for together.
@@ -19,7 +19,8 @@ class MemoryBlock {
   MemoryBlock& operator=(const MemoryBlock&) = delete;
 
   VkDeviceMemory handle() const { return memory_; }
-  std::byte* mapped() const { return mapped_; }
+  /// Of the byte at `offset`; null where it is not mapped.
+  std::byte* mapped(VkDeviceSize offset) const { return mapped_ ? mapped_ + offset : nullptr; }
   VkDeviceSize size() const { return size_; }
 
  private:
