@@ -5,6 +5,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 // 2005) of its difference from the denoised frame, with the variance that its samples tell
 // (Rousselle et al. 2012). Where patches of 3x3 pixels differ by no more than their noise, they
 // weigh alike. Weights are symmetric, so that rare bright samples are spread and not lost.
+#include "lib/denoise/history_texels.glsl"
 #include "lib/frame.glsl"
 #include "lib/lighting/lights.glsl"
 #include "shared/exposure.h"
@@ -25,7 +26,6 @@ const int reach = window + patch_reach;
 const int side = 8 + 2 * reach;
 const float least_noise = 1e-9;      // of exposed radiance
 const float guide_weight = 75.0;     // of squared differences of the denoised frame
-const float greatest = 65504.0;      // of half floats
 
 shared vec4 differences[side * side];  // of exposed radiance; a: variance of its luminance
 shared vec2 luminances[side * side];   // luminance of the difference, and of the denoised frame
@@ -68,16 +68,12 @@ float likeness(int a, int b) {
   return like * like * like * like;
 }
 
-/// Stores into half floats round toward zero on some devices, which would darken the image.
-vec4 nearest_halves(vec4 v) {
-  return vec4(unpackHalf2x16(packHalf2x16(v.xy)), unpackHalf2x16(packHalf2x16(v.zw)));
-}
-
 /// Where there is a number that is none, the frame is kept.
 void keep(ivec2 pixel, vec3 seen, vec3 color, float variance) {
   vec4 texel = vec4(color, sqrt(variance));
   if (any(isnan(texel)) || any(isinf(texel))) texel = vec4(seen, 0.0);
-  imageStore(filtered, pixel, nearest_halves(clamp(texel, -greatest, greatest)));
+  // Stores round toward zero on some devices, which would darken the image.
+  imageStore(filtered, pixel, as_halves(texel, uvec4(0x80000000u)));
 }
 
 void main() {

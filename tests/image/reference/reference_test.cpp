@@ -315,7 +315,7 @@ TEST_F(ReferenceWhenStatic, IsAutomaticOnGpusWithIndirectLight) {
   protocol::Settings settings;
   settings.accumulation.max_samples = 2;
   settings.reference.samples = 3;
-  rig_.apply(settings);
+  ASSERT_TRUE(rig_.renderer.set_settings(settings));
   const bool gpu = !engine("auto").parts().device.is_cpu();
   rig_.accumulate(2);
   EXPECT_EQ(rig_.renderer.needs_frame(), gpu);
@@ -324,7 +324,7 @@ TEST_F(ReferenceWhenStatic, IsAutomaticOnGpusWithIndirectLight) {
     EXPECT_FALSE(rig_.renderer.needs_frame());
   }
   settings.indirect.enabled = false;
-  rig_.apply(settings);
+  ASSERT_TRUE(rig_.renderer.set_settings(settings));
   rig_.accumulate(2);
   EXPECT_FALSE(rig_.renderer.needs_frame());
 }

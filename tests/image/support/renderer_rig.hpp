@@ -24,9 +24,14 @@ class RendererRig {
     renderer.set_scene(engine(tracer).upload(std::move(scene), environment));
     renderer.set_camera(camera);
     renderer.set_size(width, height);
+    apply({});
   }
 
-  void apply(const protocol::Settings& settings) {
+  /// The reference takes over on no device unless it is asked for.
+  void apply(protocol::Settings settings) {
+    if (settings.reference.use == protocol::ReferenceUse::automatic) {
+      settings.reference.use = protocol::ReferenceUse::off;
+    }
     if (!renderer.set_settings(settings)) throw std::runtime_error("settings refused");
   }
   /// Renders until `samples` samples are accumulated.

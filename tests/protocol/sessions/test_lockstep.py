@@ -263,7 +263,7 @@ class Reference(ServerTestCase):
         self.assertEqual((state["shown"], state["samples"], state["finished"]), (False, 0, False))
         after = self.server.call("settings.get")["settings"]
         self.assertEqual(after["accumulation"], before["accumulation"])
-        self.assertEqual(after["reference"]["use"], "off")
+        self.assertEqual(after["reference"], before["reference"])
 
     def test_stop_restores_the_settings_changed_by_start(self):
         def settings(session="main"):

@@ -4,6 +4,7 @@
 #include "render/passes/frame_inputs.hpp"
 #include "render/passes/post/accumulate.hpp"
 #include "render/passes/post/mean_weight.hpp"
+#include "render/passes/reference/reference.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
@@ -14,6 +15,9 @@ namespace {
 constexpr float few_samples = 2.0f;
 /// The same of the filtered mean: what is left of those samples is alike in neighbours.
 constexpr float few_filtered_samples = 8.0f;
+/// The same of path traced samples, beside the hybrid's mean, which is nearer to the truth than a
+/// single frame: similarity must not fall. Found at 640x360 in the atrium and the breakfast room.
+constexpr float few_traced_samples = 4.0f;
 
 kernels::FilterMeanConstants filter_constants(const FrameInputs& in) {
   const std::uint32_t samples = samples_of_mean(in);
@@ -23,6 +27,7 @@ kernels::FilterMeanConstants filter_constants(const FrameInputs& in) {
   constants.variance_scale = fewer * (1.0f + few_samples * fewer);
   if (in.settings.accumulation.filter && weighs_by_noise(in)) {
     constants.noise_scale = 1.0f + few_filtered_samples * fewer;
+    if (traces_reference(in)) constants.noise_scale *= few_traced_samples;
   }
   return constants;
 }
