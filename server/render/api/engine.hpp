@@ -84,6 +84,9 @@ class Engine {
       std::unique_ptr<scene::Scene> scene, std::shared_ptr<const scene::Environment> environment,
       const UploadProgress& progress = {});
 
+  /// Nothing on black: what is rendered before there is a scene. One for all renderers.
+  std::shared_ptr<const SceneResources> empty_scene();
+
   /// Uploads and prefilters an environment, or returns the one that is in use already. May run on
   /// any thread, beside rendering.
   std::shared_ptr<const LitEnvironment> prefilter(scene::Environment environment);

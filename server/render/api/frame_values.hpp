@@ -66,6 +66,7 @@ struct Frame {
   std::vector<std::uint8_t> rgba;  // sRGB, alpha 255, row 0 on top, tightly packed
   std::uint32_t samples = 0;       // accumulated in this frame
   bool converged = false;          // another frame would show the same
+  bool new_buffers = false;        // buffers() may differ from those of the frame before
   float milliseconds = 0.0f;       // whole frame, wall clock
   std::vector<PassTime> passes;
   CacheUse radiance_cache;  // nothing where indirect light is off

@@ -48,6 +48,20 @@ std::unique_ptr<gpu::ShaderReload> make_shader_reload(const gpu::Device& device,
   return std::make_unique<gpu::ShaderReload>(device, folder, shaders::all);
 }
 
+scene::Scene make_empty_scene() {
+  scene::Scene scene;
+  scene.name = "empty";
+  scene.material_names.emplace_back("none");
+  scene.materials.emplace_back();
+  for (const auto slot :
+       {&shared::Material::base_color_texture, &shared::Material::metallic_roughness_texture,
+        &shared::Material::normal_texture, &shared::Material::occlusion_texture,
+        &shared::Material::emissive_texture}) {
+    (scene.materials.back().*slot).texture = shared::no_texture;
+  }
+  return scene;
+}
+
 }  // namespace
 
 Engine::Parts::Parts(const EngineOptions& options)
@@ -143,6 +157,20 @@ std::shared_ptr<const SceneResources> Engine::upload_images(
   return with_device(parts, std::make_shared<const SceneResources>(
                                 parts->device, parts->programs, std::move(scene), std::move(around),
                                 *parts->tracer, report, image_done));
+}
+
+std::shared_ptr<const SceneResources> Engine::empty_scene() {
+  const std::shared_ptr<Parts> parts = current();
+  const std::lock_guard lock(parts->empty_mutex);
+  if (!parts->empty) {
+    auto black =
+        std::make_shared<const scene::Environment>(scene::constant_environment(glm::vec3(0.0f)));
+    parts->empty = std::make_shared<const SceneResources>(
+        parts->device, parts->programs, std::make_shared<const scene::Scene>(make_empty_scene()),
+        parts->environments.get(std::move(black)), *parts->tracer, [](std::string_view, float) {},
+        [](std::size_t) {});
+  }
+  return with_device(parts, parts->empty);
 }
 
 std::shared_ptr<const LitEnvironment> Engine::renew(const LitEnvironment& lost) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+#include <mutex>
+
 #include "gpu/device/device.hpp"
 #include "gpu/pipelines/shader_reload.hpp"
 #include "render/api/engine.hpp"
@@ -27,6 +30,8 @@ struct Engine::Parts {
   gpu::Sampler clamped;
   DeviceInfo info;
   bool host_kernels;
+  std::mutex empty_mutex;
+  std::shared_ptr<const SceneResources> empty;  // made when the first renderer asks for it
 };
 
 }  // namespace heliograph::render

@@ -23,20 +23,6 @@
 namespace heliograph::render {
 namespace {
 
-scene::Scene empty_scene() {
-  scene::Scene scene;
-  scene.name = "empty";
-  scene.material_names.emplace_back("none");
-  scene.materials.emplace_back();
-  for (const auto slot :
-       {&shared::Material::base_color_texture, &shared::Material::metallic_roughness_texture,
-        &shared::Material::normal_texture, &shared::Material::occlusion_texture,
-        &shared::Material::emissive_texture}) {
-    (scene.materials.back().*slot).texture = shared::no_texture;
-  }
-  return scene;
-}
-
 /// `automatic` as one of the others. On processors a path traced sample takes several times as long
 /// as one of the hybrid, whose mean is as similar to the truth as that of a hundred of them.
 void choose_reference(protocol::Settings& settings, bool on_processor) {
@@ -68,7 +54,8 @@ struct Renderer::State {
     choose_reference(settings, parts.device.is_cpu());
   }
 
-  void rebuild_frame_plan();
+  void discard_frame_plan();
+  CompiledFrame& frame_plan();
   VkExtent2D drawn() const;
   void set_drawn();
   void change_settings(const protocol::Settings& changed);
@@ -80,7 +67,7 @@ struct Renderer::State {
     return keeps_buffers ||
            (shown != present_buffers.output.name && shown != present_buffers.radiance.name);
   }
-  std::optional<FloatImage> read(std::string_view name) const;
+  std::optional<FloatImage> read(std::string_view name);
   std::uint32_t target_samples() const;
   bool reference_takes_over() const;
   void restart_accumulation() {
@@ -112,7 +99,7 @@ struct Renderer::State {
   VkExtent2D extent{640, 360};  // of the finished frame
   float draw_scale = 1.0f;
 
-  std::unique_ptr<CompiledFrame> compiled;
+  std::unique_ptr<CompiledFrame> compiled;  // absent until it is needed: see frame_plan()
 };
 
 std::uint32_t Renderer::State::target_samples() const {
@@ -130,9 +117,17 @@ bool Renderer::State::reference_takes_over() const {
          clock.samples >= static_cast<std::uint32_t>(settings.accumulation.max_samples);
 }
 
-// The old plan is freed first: two of them may not fit into memory.
-void Renderer::State::rebuild_frame_plan() {
+/// Changes of size, scene and settings that follow each other cost one plan together.
+void Renderer::State::discard_frame_plan() {
   compiled.reset();
+  has_buffers = false;
+  has_previous = false;
+  sample_index = 0;
+  restart_accumulation();
+}
+
+CompiledFrame& Renderer::State::frame_plan() {
+  if (compiled) return *compiled;
   const FrameInputs inputs{parts.programs,
                            *scene,
                            moving->tables(),
@@ -151,10 +146,7 @@ void Renderer::State::rebuild_frame_plan() {
   compiled =
       std::make_unique<CompiledFrame>(parts, inputs, constants_buffers, extent, buffers_needed());
   compiled->plan.set_drawn(drawn());
-  has_buffers = false;
-  has_previous = false;
-  sample_index = 0;
-  restart_accumulation();
+  return *compiled;
 }
 
 VkExtent2D Renderer::State::drawn() const {
@@ -164,16 +156,17 @@ VkExtent2D Renderer::State::drawn() const {
 
 void Renderer::State::set_drawn() {
   const auto pixels = [](VkExtent2D size) { return float(size.width) * float(size.height); };
+  restart_accumulation();
+  if (!compiled) return;
   const float before = pixels(compiled->plan.drawn());
   compiled->plan.set_drawn(drawn());
-  restart_accumulation();
   clock.carried_share = std::min(before / pixels(drawn()), 1.0f);
 }
 
 void Renderer::State::change_settings(const protocol::Settings& changed) {
   const auto scope = protocol::changed_scope(settings, changed);
   settings = changed;
-  if (includes(scope, protocol::ResetScope::structure)) rebuild_frame_plan();
+  if (includes(scope, protocol::ResetScope::structure)) discard_frame_plan();
   stale = true;
   if (includes(scope, protocol::ResetScope::history)) has_previous = false;
   if (includes(scope, protocol::ResetScope::accumulation)) restart_accumulation();
@@ -190,7 +183,8 @@ void Renderer::State::use_newest_shaders() {
   restart_accumulation();
 }
 
-std::optional<FloatImage> Renderer::State::read(std::string_view name) const {
+std::optional<FloatImage> Renderer::State::read(std::string_view name) {
+  frame_plan();
   if (name == present_buffers.radiance.name) return shown_radiance(*compiled);
   const View view = find_view(name);
   const auto image = view ? compiled->find(view.buffer->name) : std::nullopt;
@@ -212,9 +206,7 @@ Frame Renderer::State::output() {
 }
 
 Renderer::Renderer(Engine& engine)
-    : state_(std::make_unique<State>(
-          engine.parts(), engine.upload(std::make_shared<const scene::Scene>(empty_scene()),
-                                        scene::constant_environment(glm::vec3(0.0f))))) {
+    : state_(std::make_unique<State>(engine.parts(), engine.empty_scene())) {
   set_scene(nullptr);
 }
 Renderer::~Renderer() = default;
@@ -224,13 +216,13 @@ void Renderer::set_scene(std::shared_ptr<const SceneResources> scene) {
   state_->compiled.reset();
   state_->scene = scene ? std::move(scene) : state_->nothing;
   state_->moving.emplace(state_->parts.device, *state_->parts.tracer, state_->scene);
-  state_->rebuild_frame_plan();
+  state_->discard_frame_plan();
 }
 
 void Renderer::set_lights(std::span<const shared::Light> lights) {
   const bool moves = only_move(state_->moving->lights(), lights);
   if (state_->moving->set_lights(lights)) {
-    state_->rebuild_frame_plan();
+    state_->discard_frame_plan();
   } else {
     if (!moves) state_->has_previous = false;
     state_->restart_accumulation();
@@ -239,7 +231,7 @@ void Renderer::set_lights(std::span<const shared::Light> lights) {
 
 void Renderer::set_materials(std::span<const shared::Material> materials) {
   if (state_->moving->set_materials(materials)) {
-    state_->rebuild_frame_plan();
+    state_->discard_frame_plan();
   } else {
     state_->has_previous = false;
     state_->restart_accumulation();
@@ -250,13 +242,13 @@ void Renderer::set_environment(std::shared_ptr<const LitEnvironment> environment
   state_->compiled.reset();
   state_->moving->set_environment(environment ? std::move(environment)
                                               : state_->scene->environment);
-  state_->rebuild_frame_plan();
+  state_->discard_frame_plan();
 }
 
 void Renderer::set_size(std::uint32_t width, std::uint32_t height) {
   if (state_->extent.width == width && state_->extent.height == height) return;
   state_->extent = {width, height};
-  state_->rebuild_frame_plan();
+  state_->discard_frame_plan();
 }
 
 void Renderer::set_draw_scale(float scale) {
@@ -288,7 +280,7 @@ void Renderer::invalidate_history() {
 }
 
 void Renderer::reset() {
-  state_->rebuild_frame_plan();
+  state_->discard_frame_plan();
 }
 
 void Renderer::set_frame_seconds(float seconds) {
@@ -318,7 +310,7 @@ bool Renderer::needs_frame() const {
   const auto& reload = state_->parts.shader_reload;
   if (reload && reload->version() != state_->shader_version) return true;
   if (state_->stale || state_->clock.samples < state_->target_samples()) return true;
-  if (state_->moving->needs_advance()) return true;
+  if (!state_->compiled || state_->moving->needs_advance()) return true;
   // Without time between frames exposure does not change.
   const CompiledFrame& compiled = *state_->compiled;
   return state_->clock.seconds > 0.0f && !is_settled(compiled.plan, compiled.outputs.exposure);
@@ -332,9 +324,11 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
   State& state = *state_;
   const auto start = std::chrono::steady_clock::now();
   state.use_newest_shaders();
+  const bool is_new = !state.compiled;
+  CompiledFrame& compiled = state.frame_plan();
   state.stale = false;
   state.has_buffers = false;
-  state.compiled->plan.keep_images(state.buffers_needed());
+  if (!is_new) compiled.plan.keep_images(state.buffers_needed());
   bool moves = state.moving->advance();
   // Without a frame before there is no motion since.
   if (!state.has_previous) moves |= state.moving->advance();
@@ -360,7 +354,7 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
   state.has_previous = true;
   state.half_constants = at_half_size(state.constants);
   state.constants_buffers.upload(state.constants, state.half_constants);
-  if (!state.compiled->plan.execute(canceled)) {
+  if (!compiled.plan.execute(canceled)) {
     state.constants = before;
     state.has_previous = had_previous;
     state.clock.age = age;
@@ -368,9 +362,9 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
     state.stale = true;
     return std::nullopt;
   }
-  state.has_buffers = state.compiled->plan.keeps_images();
+  state.has_buffers = compiled.plan.keeps_images();
   if (state.clock.samples == 0) {
-    state.clock.first_counts = !leaves_samples_out(state.compiled->inputs);
+    state.clock.first_counts = !leaves_samples_out(compiled.inputs);
   }
   ++state.clock.samples;
 
@@ -379,16 +373,16 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
     draw_text(state.parts.shader_reload->error(), frame.rgba, frame.width, frame.height);
   }
   frame.samples = state.clock.samples;
-  const CompiledFrame& compiled = *state.compiled;
   if (compiled.outputs.radiance_cache) {
     frame.radiance_cache = radiance_cache_use(compiled.plan, *compiled.outputs.radiance_cache);
   }
   frame.converged = !needs_frame();
+  frame.new_buffers = is_new;
   if (moves) {
     const std::chrono::duration<float, std::milli> posing = posed - start;
     frame.passes.push_back({"pose", protocol::PassKind::host, posing.count()});
   }
-  for (const auto& timing : state.compiled->plan.timings()) {
+  for (const auto& timing : compiled.plan.timings()) {
     if (timing.milliseconds < 0.0f) continue;
     const auto kind = timing.host ? protocol::PassKind::host : protocol::PassKind::device;
     // Strips of rays are passes of one name.
@@ -406,7 +400,7 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
 
 std::vector<PassWork> Renderer::work() const {
   std::vector<PassWork> all;
-  for (const auto& pass : state_->compiled->plan.work()) {
+  for (const auto& pass : state_->frame_plan().plan.work()) {
     const auto known = std::ranges::find(all, pass.name, &PassWork::name);
     if (known == all.end()) {
       all.push_back({pass.name, pass.image_bytes, pass.entries});
@@ -418,7 +412,7 @@ std::vector<PassWork> Renderer::work() const {
 }
 
 const std::vector<BufferInfo>& Renderer::buffers() const {
-  return state_->compiled->buffers;
+  return state_->frame_plan().buffers;
 }
 
 protocol::Result<FloatImage> Renderer::capture(std::string_view buffer) {
@@ -437,14 +431,14 @@ protocol::Result<Frame> Renderer::capture_view(std::string_view buffer) {
 }
 
 std::vector<BufferValue> Renderer::inspect(glm::vec2 point) const {
-  const CompiledFrame& compiled = *state_->compiled;
+  const CompiledFrame& compiled = state_->frame_plan();
   return inspect_buffers(
       compiled, {state_->constants, exposure_factor(compiled.plan, compiled.outputs.exposure)},
       point);
 }
 
 protocol::Result<std::optional<SurfacePoint>> Renderer::pick(glm::vec2 point) const {
-  return surface_at(*state_->compiled, state_->constants, point);
+  return surface_at(state_->frame_plan(), state_->constants, point);
 }
 
 }  // namespace heliograph::render

@@ -223,7 +223,6 @@ void SessionView::adopt(RenderState next) {
   }
   adopt_pose();
   apply(state_.settings);
-  publish_buffers();
 }
 
 /// What the session changed in the scene; a scene that is new to the renderer has no changes yet.
@@ -371,6 +370,7 @@ void SessionView::render_frame(double seconds) {
     return;
   }
   render::Frame& frame = *finished;
+  if (frame.new_buffers) publish_buffers();
   const Clock::time_point end = Clock::now();
   measure_frame(view_state, end - start);
   services_.measurements.rendered(std::chrono::duration<double>(end - start).count(),
