@@ -25,9 +25,24 @@ async function otherSite(html) {
   return { origin: `http://127.0.0.1:${server.address().port}`, close: () => server.close() };
 }
 
-async function saved(page, entry) {
+async function openSave(page, { format = "png", samples = "converged" } = {}) {
+  await chooseOutput(page, "Save image");
+  const dialog = page.getByRole("dialog", { name: "Save image" });
+  await dialog.getByLabel("Format").selectOption(format);
+  await dialog.getByLabel("Samples").selectOption(samples);
+  return dialog;
+}
+
+async function saved(page, options) {
+  const dialog = await openSave(page, options);
+  return downloaded(page, () =>
+    dialog.getByRole("button", { name: "Save", exact: true }).click(),
+  );
+}
+
+async function downloaded(page, action) {
   const download = page.waitForEvent("download", { timeout: 130_000 });
-  await chooseOutput(page, entry);
+  await action();
   const file = await download;
   const path = join(outputFolder, file.suggestedFilename());
   await file.saveAs(path);
@@ -45,16 +60,50 @@ function exrWindow(bytes) {
 stage.test("saved PNG and EXR images equal captures of the server", async () => {
   const { page } = await stage.watch();
   await settle(page, stage.server);
-  const png = await saved(page, "Save image as PNG");
+  const png = await saved(page);
   assert.match(png.name, /^shadow_objects\.png$/);
   const capture = await stage.server.call("frame.capture", { buffer: "output", format: "png" });
   const [mine, theirs] = [png.bytes, Buffer.from(capture.data, "base64")];
   const [a, b] = [await thumbnail(page, mine), await thumbnail(page, theirs)];
   assert.ok(difference(a, b) < 0.01, "the saved image differs");
   assert.ok(statistics(a).deviation > 0.03, "the saved image is nearly uniform");
-  const exr = await saved(page, "Save image as EXR");
+  const exr = await saved(page, { format: "exr" });
   assert.match(exr.name, /\.exr$/);
   assert.deepEqual(exrWindow(exr.bytes), { width: capture.width, height: capture.height });
+});
+
+stage.test("an image is saved at once as it is, and a converged one can be cancelled", async () => {
+  const { page } = await stage.watch();
+  await settle(page, stage.server);
+  // Converging takes so long that only what is there already can be saved.
+  await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 65536 } } });
+  await stage.server.call("camera.orbit", { yaw: 5, pitch: 0 });
+  const jpeg = await saved(page, { format: "jpeg", samples: "now" });
+  assert.match(jpeg.name, /\.jpg$/);
+  assert.deepEqual([...jpeg.bytes.subarray(0, 2)], [0xff, 0xd8]);
+  const toast = page.locator(".toast", { hasText: jpeg.name });
+  assert.match(await toast.textContent(), /\d+ x \d+ pixels, \d+ samples?/);
+
+  const downloads = [];
+  page.on("download", (file) => downloads.push(file.suggestedFilename()));
+  const dialog = await openSave(page);
+  await dialog.getByRole("button", { name: "Save", exact: true }).click();
+  const status = dialog.getByRole("status");
+  await eventually(
+    async () => /Rendering: \d+ of 65536 samples/.test(await status.textContent()),
+    "progress",
+  );
+  assert.ok(await dialog.getByRole("progressbar").isVisible());
+  await screenshot(page, "save_dialog");
+  await dialog.getByRole("button", { name: "Cancel" }).click();
+  await dialog.waitFor({ state: "hidden" });
+  await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 4 } } });
+  await settle(page, stage.server);
+  assert.deepEqual(downloads, [], "a cancelled image was saved");
+  const again = await openSave(page);
+  assert.ok(await again.getByRole("button", { name: "Save", exact: true }).isEnabled());
+  await page.keyboard.press("Escape");
+  await again.waitFor({ state: "hidden" });
 });
 
 stage.test("the copied image is in the clipboard", async () => {
@@ -112,7 +161,7 @@ stage.test("a recording is a playable video with different frames", async () => 
   const before = await drawn();
   await eventually(async () => (await drawn()) >= before + 12, "twelve frames", 60_000);
   const { width, height } = await page.evaluate(() => window.seen.frame);
-  const { name, path, bytes } = await saved(page, "Stop recording");
+  const { name, path, bytes } = await downloaded(page, () => chooseOutput(page, "Stop recording"));
   await stage.server.call("animation.pause");
   assert.match(name, /\.webm$/);
   const video = await playVideo(bytes);

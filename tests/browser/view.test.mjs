@@ -122,6 +122,27 @@ stage.test("the wheel zooms towards the pointer", async () => {
   assert.ok(camera.eye[2] < 5.9 && camera.eye[0] < -0.05, `${camera.eye}`);
 });
 
+stage.test("the wheel comes close to a surface and never passes it", async () => {
+  const { page } = await stage.watch();
+  await setCamera(page, stage.server, { eye: [0, 1, 6], target: [0, 0.6, 0] });
+  const { x, y, width, height } = await page.locator("#view").boundingBox();
+  const surface = (await stage.server.call("scene.pick", { x: 0.5, y: 0.5 })).position;
+  const far = Math.hypot(...surface.map((value, axis) => value - [0, 1, 6][axis]));
+  await page.mouse.move(x + width / 2, y + height / 2);
+  for (let i = 0; i < 40; i += 1) {
+    await page.mouse.wheel(0, -240);
+    await page.waitForTimeout(25);
+  }
+  const pick = await eventually(async () => {
+    const found = await stage.server.call("scene.pick", { x: 0.5, y: 0.5 });
+    return found.hit && found.distance < 0.1 * far && found;
+  }, "the surface to be close");
+  const { eye } = await staticCamera(page, stage.server);
+  const off = Math.hypot(...surface.map((value, axis) => value - pick.position[axis]));
+  assert.ok(off < 0.05 * far, `${off} m beside the surface`);
+  assert.ok(eye[2] > surface[2], `${eye} is behind ${surface}`);
+});
+
 stage.test("a clip plays, pauses and seeks", async () => {
   const { page } = await stage.watch();
   await page.locator("#transport select[name=clip]").selectOption("moving_objects_light");

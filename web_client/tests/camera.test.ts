@@ -3,7 +3,8 @@ import test from "node:test";
 import type { Vector3 } from "heliograph/json.ts";
 import type { CameraPose } from "../src/common/camera_pose.ts";
 import { length, subtract } from "../src/common/vector.ts";
-import { dolly, orbit, pan, visibleHeight } from "../src/view/camera.ts";
+import { dolly, orbit, pan, visibleHeight, zoomTo } from "../src/view/camera.ts";
+import { ZoomAnchor } from "../src/view/zoom_anchor.ts";
 
 const front: CameraPose = {
   eye: [0, 0, 5],
@@ -73,4 +74,53 @@ test("dolly beyond the nearest distance moves eye and target", () => {
   const walked = dolly(close, 0.5, 1, 100);
   near(walked.eye, [0, 0, 0.5]);
   near(walked.target, [0, 0, -0.5]);
+});
+
+test("zooming to a surface keeps its direction and never passes it", () => {
+  const surface: Vector3 = [1, 0.5, 2];
+  const direction = (camera: CameraPose): Vector3 => {
+    const offset = subtract(surface, camera.eye);
+    return offset.map((value) => value / length(offset)) as Vector3;
+  };
+  let camera = front;
+  for (let step = 0; step < 60; step += 1) camera = zoomTo(camera, 0.7, surface, [0.01, 100]);
+  near(direction(camera), direction(front), 1e-6);
+  const distance = length(subtract(surface, camera.eye));
+  assert.ok(Math.abs(distance - 0.01) < 1e-9, `${distance}`);
+  assert.ok(camera.eye[2] > surface[2]);
+  near(zoomTo(front, 1000, surface, [0.01, 100]).eye, [-30.23, -15.12, 95.7], 0.05);
+});
+
+test("a camera that is too close to a surface stays where it is", () => {
+  assert.deepEqual(zoomTo(front, 0.5, [0, 0, 4.99], [0.1, 100]).eye, front.eye);
+});
+
+test("until the surface is known the view comes no closer than by its part", async () => {
+  let answer: (point: Vector3 | null) => void = () => {};
+  let asked = 0;
+  const resumed: [number, Vector3 | null][] = [];
+  const anchor = new ZoomAnchor(
+    () => {
+      asked += 1;
+      return new Promise((resolve) => (answer = resolve));
+    },
+    (factor, point) => resumed.push([factor, point]),
+  );
+  assert.equal(anchor.under(0.5, 0.5), null);
+  let zoomed = 1;
+  for (let step = 0; step < 20; step += 1) {
+    assert.equal(anchor.under(0.502, 0.5), null, "the pointer rests");
+    zoomed *= anchor.limit(0.8);
+  }
+  assert.ok(Math.abs(zoomed - 0.6) < 1e-9, `${zoomed}`);
+  answer([1, 2, 3]);
+  await Promise.resolve();
+  assert.deepEqual(anchor.under(0.5, 0.5), [1, 2, 3]);
+  assert.equal(anchor.limit(0.8), 0.8);
+  const [[held, surface] = []] = resumed;
+  assert.ok(Math.abs((held ?? 0) - 0.8 ** 20 / 0.6) < 1e-9, "what was held back follows");
+  assert.deepEqual(surface, [1, 2, 3]);
+  assert.equal(asked, 1);
+  assert.equal(anchor.under(0.6, 0.5), null, "another point");
+  assert.equal(asked, 2);
 });

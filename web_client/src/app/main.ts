@@ -1,7 +1,8 @@
 // Entry point: creates the page's parts and connects them.
 
 import { Comparison } from "../compare/comparison.ts";
-import { outputActions } from "../output/output_actions.ts";
+import { fileStem, outputActions } from "../output/output_actions.ts";
+import { createSaveDialog } from "../output/save_dialog.ts";
 import { createHelp } from "../overlay/help.ts";
 import { mountMjpegFallback } from "../overlay/mjpeg_fallback.ts";
 import { mountParticipants } from "../overlay/participants.ts";
@@ -51,6 +52,7 @@ function main(): void {
     sceneSize: () => viewer.sceneSize(),
     moved: (camera) => viewer.moveCamera(camera),
     fit: () => void viewer.fitCamera(),
+    surfaceAt: (x, y) => viewer.surfaceAt(x, y),
     focus: (x, y) => void focusAt(x, y),
   });
   const focusAt = async (x: number, y: number): Promise<void> => {
@@ -66,9 +68,14 @@ function main(): void {
   const divider = createDivider(find("compare"));
   mountMjpegFallback(viewer, find("mjpeg"));
   mountParticipants(viewer, find("participants"), (message) => toasts.inform(message));
+  const inform = (message: string): void => toasts.inform(message);
+  const saveDialog = createSaveDialog(find<HTMLDialogElement>("save"), viewer, {
+    fileStem: () => fileStem(viewer),
+    inform,
+  });
   const help = createHelp(find<HTMLDialogElement>("help"));
   const panel = mountPanel(find("panel"), viewer, {
-    output: outputActions(viewer, { inform: (message) => toasts.inform(message) }),
+    output: outputActions(viewer, { save: saveDialog.open, inform }),
     inspect: {
       comparison: new Comparison(viewer, () => divider.newCanvas()),
       divider,

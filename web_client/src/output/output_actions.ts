@@ -8,6 +8,8 @@ import type { MenuItem } from "../widgets/menu.ts";
 import { Recorder } from "./recorder.ts";
 
 interface OutputHost {
+  /** Opens the dialog that saves an image. */
+  save(): void;
   /** Shows the result as one sentence. */
   inform(message: string): void;
 }
@@ -17,21 +19,8 @@ export function outputActions(viewer: Viewer, host: OutputHost): MenuItem[] {
     void action().catch((error: unknown) => viewer.report(error));
   };
   const recorder = new Recorder(viewer);
-  const save = (format: "png" | "exr") =>
-    attempt(async () => {
-      host.inform(`Rendering the ${format.toUpperCase()} image`);
-      const capture = await viewer.capture(undefined, format);
-      const suffix = capture.buffer === "output" ? "" : `-${capture.buffer}`;
-      saveFile(captureBlob(capture), `${fileStem(viewer)}${suffix}.${format}`);
-    });
   return [
-    { label: "Save image as PNG", icon: "save", run: save("png") },
-    {
-      label: "Save image as EXR",
-      icon: "save",
-      run: save("exr"),
-      isAvailable: () => viewer.capabilities.captureFormats.value.has("exr"),
-    },
+    { label: "Save image", icon: "save", run: host.save },
     {
       label: "Copy image",
       icon: "copy",
@@ -85,7 +74,8 @@ export function outputActions(viewer: Viewer, host: OutputHost): MenuItem[] {
   ];
 }
 
-function fileStem(viewer: Viewer): string {
+/** The scene's name as the name of a file. */
+export function fileStem(viewer: Viewer): string {
   const scene = viewer.scene.value?.name ?? "scene";
   return scene.replace(/\.[^./]+$/, "").replace(/[^\w.-]+/g, "_");
 }

@@ -8,7 +8,7 @@ const entries: [title: string, rows: [keys: string[], meaning: string][]][] = [
     [
       [["Drag"], "Orbit"],
       [["Right drag"], "Pan (also middle drag or Shift + drag)"],
-      [["Wheel"], "Zoom towards the pointer"],
+      [["Wheel"], "Zoom to the surface under the pointer"],
       [["Double click"], "Focus on the surface under the pointer"],
     ],
   ],

@@ -2,6 +2,7 @@
 // that the frames are drawn to.
 
 import { Codec } from "heliograph/frame_header.ts";
+import type { Vector3 } from "heliograph/json.ts";
 import {
   type AnimationState,
   type Capture,
@@ -245,6 +246,16 @@ export class Viewer {
     }
   }
 
+  /** The surface at a point of the view, world space; null where none is known. Reports no errors. */
+  async surfaceAt(x: number, y: number): Promise<Vector3 | null> {
+    if (!this.mayChange || !this.capabilities.has("scene.pick")) return null;
+    try {
+      return (await this.rpc.request("scene.pick", { x, y })).position;
+    } catch {
+      return null;
+    }
+  }
+
   /** A buffer of the frame as a small image, in a data URL. */
   async captureThumbnail(buffer: string, width: number): Promise<string> {
     const format = this.capabilities.captureFormats.value.has("jpeg") ? "jpeg" : "png";
@@ -252,10 +263,15 @@ export class Viewer {
     return thumbnailUrl(captureBlob(capture), width);
   }
 
-  /** A buffer as a file; by default the one that is shown. */
-  async capture(name?: string, format: FrameCaptureParams["format"] = "png"): Promise<Capture> {
+  /** A buffer as a file; by default the one that is shown, converged. */
+  async capture(
+    name?: string,
+    format: FrameCaptureParams["format"] = "png",
+    samples?: number,
+  ): Promise<Capture> {
     const buffer = name ?? String(this.settings.value(bufferSetting) ?? "output");
-    return this.rpc.request("frame.capture", { buffer, format }, captureTimeoutMs);
+    const params = samples === undefined ? { buffer, format } : { buffer, format, samples };
+    return this.rpc.request("frame.capture", params, captureTimeoutMs);
   }
 
   /** Takes or passes on control of the session, or changes its mode. */

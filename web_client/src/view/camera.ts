@@ -84,6 +84,24 @@ export function dollyToPoint(
   return { ...moved, eye: add(moved.eye, shift), target: add(moved.target, shift) };
 }
 
+/**
+ * Scales the distance from a point of a surface, whose position in the image stays fixed: never
+ * through the surface, and no closer than `nearest` metres.
+ */
+export function zoomTo(
+  camera: CameraPose,
+  factor: number,
+  point: Vector3,
+  [nearest, farthest]: [number, number],
+): CameraPose {
+  const distance = length(subtract(camera.eye, point));
+  if (distance === 0) return camera;
+  const wanted = Math.min(farthest, Math.max(nearest, distance * factor)) / distance;
+  const limited = factor < 1 ? Math.min(1, wanted) : Math.max(1, wanted);
+  const scaled = (from: Vector3): Vector3 => add(point, scale(subtract(from, point), limited));
+  return { ...camera, eye: scaled(camera.eye), target: scaled(camera.target), name: null };
+}
+
 /** Rotates about the eye. Angles in radians, right and up positive. */
 export function look(camera: CameraPose, right: number, up: number): CameraPose {
   const turned = orbit({ ...camera, eye: camera.target, target: camera.eye }, -right, up);

@@ -1,7 +1,9 @@
 // Turns mouse, touch and keyboard input into camera poses: at most one per animation frame.
 
+import type { Vector3 } from "heliograph/json.ts";
 import type { CameraPose } from "../common/camera_pose.ts";
-import { dolly, dollyToPoint, fly, interpolate, look, orbit, pan } from "./camera.ts";
+import { dolly, dollyToPoint, fly, interpolate, look, orbit, pan, zoomTo } from "./camera.ts";
+import { ZoomAnchor } from "./zoom_anchor.ts";
 
 interface NavigationHost {
   /** The pose to start from; null while there is no scene. */
@@ -11,6 +13,8 @@ interface NavigationHost {
   /** Takes the new pose, once per animation frame. */
   moved(camera: CameraPose): void;
   fit(): void;
+  /** The surface at a point, in fractions of the view's width and height; null where none is. */
+  surfaceAt(x: number, y: number): Promise<Vector3 | null>;
   /** Focuses on the surface at a point, in fractions of the view's width and height. */
   focus(x: number, y: number): void;
 }
@@ -32,6 +36,8 @@ const lookPerHeight = 0.6 * Math.PI; // radians for a drag over the height of th
 const flyPerMs = 2e-4; // scene sizes per millisecond
 const fastFlyFactor = 4;
 const transitionMs = 450;
+/** How close the wheel brings the eye to a surface, as a part of the least distance to a target. */
+const nearestSurface = 0.2;
 
 const navigationKeys = new Set([
   "ArrowLeft",
@@ -60,6 +66,7 @@ export class Navigation {
   private readonly reducedMotion = matchMedia("(prefers-reduced-motion: reduce)");
   private readonly pointers = new Map<number, Point>();
   private readonly heldKeys = new Set<string>();
+  private readonly zoomAnchor: ZoomAnchor;
   private gesture: Gesture | null = null;
   private pendingPose: CameraPose | null = null;
   private frameRequest = 0;
@@ -72,6 +79,10 @@ export class Navigation {
   constructor(surface: HTMLElement, host: NavigationHost) {
     this.surface = surface;
     this.host = host;
+    this.zoomAnchor = new ZoomAnchor(
+      (x, y) => host.surfaceAt(x, y),
+      (factor, point, at) => this.zoomAt(factor, point, at),
+    );
     surface.addEventListener("pointerdown", this.pointerDown);
     surface.addEventListener("pointermove", this.pointerMove);
     surface.addEventListener("pointerup", this.pointerUp);
@@ -108,6 +119,11 @@ export class Navigation {
   }
 
   private stopMotion(): void {
+    this.zoomAnchor.forget();
+    this.stopInertia();
+  }
+
+  private stopInertia(): void {
     this.inertia = { yaw: 0, pitch: 0 };
     this.transition = null;
   }
@@ -183,14 +199,23 @@ export class Navigation {
     // Trackpads report a pinch as a wheel with ctrl, in much smaller steps.
     const rate = event.ctrlKey ? 0.01 : 0.0015;
     const { left, top, width, height } = this.surface.getBoundingClientRect();
-    const right = (event.clientX - left - width / 2) / height;
-    const down = (event.clientY - top) / height - 0.5;
-    this.stopMotion();
-    this.change((camera) => {
-      const factor = Math.exp(pixels * rate);
-      return dollyToPoint(camera, factor, this.distances(), right, down);
-    });
+    const at = { x: (event.clientX - left) / width, y: (event.clientY - top) / height };
+    this.stopInertia();
+    const surface = this.zoomAnchor.under(at.x, at.y);
+    this.zoomAt(this.zoomAnchor.limit(Math.exp(pixels * rate)), surface, at);
   };
+
+  /** Zooms to a surface or, where there is none, to a point of the view, in fractions of its size. */
+  private zoomAt(factor: number, surface: Vector3 | null, at: Point): void {
+    const { width, height } = this.surface.getBoundingClientRect();
+    const right = ((at.x - 0.5) * width) / height;
+    this.change((camera) => {
+      const [nearest, farthest] = this.distances();
+      return surface
+        ? zoomTo(camera, factor, surface, [nearestSurface * nearest, farthest])
+        : dollyToPoint(camera, factor, [nearest, farthest], right, at.y - 0.5);
+    });
+  }
 
   private readonly doubleClick = (event: MouseEvent): void => {
     const { left, top, width, height } = this.surface.getBoundingClientRect();

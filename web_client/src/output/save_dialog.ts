@@ -1,0 +1,145 @@
+// The dialog that saves the view as an image: format, samples, progress, cancelling.
+
+import { saveFile, captureBlob } from "../common/image_files.ts";
+import type { Viewer } from "../session/viewer.ts";
+import { button, element, setOptions, setText } from "../widgets/element.ts";
+import { field } from "../widgets/field.ts";
+
+interface SaveHost {
+  /** The file's name without its ending. */
+  fileStem(): string;
+  /** Shows the result as one sentence. */
+  inform(message: string): void;
+}
+
+const formats = [
+  { value: "png", label: "PNG, without loss" },
+  { value: "jpeg", label: "JPEG, smaller" },
+  { value: "exr", label: "EXR, linear radiance and layers" },
+] as const;
+type Format = (typeof formats)[number]["value"];
+
+const maxSamples = "accumulation.max_samples";
+
+export function createSaveDialog(
+  dialog: HTMLDialogElement,
+  viewer: Viewer,
+  host: SaveHost,
+): { open(): void } {
+  const format = element("select", { name: "format" });
+  const samples = element("select", { name: "samples" });
+  const bar = element("div", { class: "bar" });
+  const progress = element(
+    "div",
+    { class: "progress", role: "progressbar", "aria-label": "Rendering", hidden: true },
+    bar,
+  );
+  const status = element("p", { class: "save-status", role: "status" });
+  const save = element("button", { type: "submit", class: "button" }, "Save");
+  const cancel = element("button", { type: "button", class: "button quiet" }, "Cancel");
+  const form = element(
+    "form",
+    { method: "dialog" },
+    field("Format", format),
+    field("Samples", samples),
+    progress,
+    status,
+    element("footer", {}, cancel, save),
+  );
+  dialog.append(
+    element(
+      "header",
+      {},
+      element("h1", { id: "save-title" }, "Save image"),
+      button("Close", "close", () => dialog.close()),
+    ),
+    form,
+  );
+
+  /** Counts saves: the result of one that was cancelled is not written. */
+  let attempt = 0;
+  let isSaving = false;
+
+  const targetSamples = (): number => Number(viewer.settings.value(maxSamples) ?? 1);
+  const shownSamples = (): number => viewer.frame.value?.samples ?? 1;
+
+  const update = (): void => {
+    if (!dialog.open) return;
+    const shown = shownSamples();
+    const converged = viewer.frame.value?.final ?? false;
+    if (!isSaving) {
+      setOptions(samples, [
+        { value: "now", label: `As it is now: ${counted(shown)}` },
+        { value: "converged", label: converged ? "Converged: now" : "Converged: when finished" },
+      ]);
+      return;
+    }
+    const target = targetSamples();
+    const rendered = Math.max(shown, viewer.stats.value?.samples ?? 0);
+    const share = converged ? 1 : Math.min(1, rendered / target);
+    bar.style.width = `${share * 100}%`;
+    progress.setAttribute("aria-valuenow", String(Math.round(share * 100)));
+    setText(status, `Rendering: ${rendered} of ${Math.max(target, rendered)} samples`);
+  };
+  viewer.frame.watch(update);
+  viewer.stats.watch(update);
+
+  const setSaving = (saving: boolean): void => {
+    isSaving = saving;
+    format.disabled = samples.disabled = save.disabled = saving;
+    progress.hidden = !saving;
+    bar.style.width = "0";
+    setText(status, "");
+    update();
+  };
+
+  const run = async (): Promise<void> => {
+    attempt += 1;
+    const own = attempt;
+    const chosen = format.value as Format;
+    const wanted = samples.value === "now" ? shownSamples() : undefined;
+    setSaving(true);
+    try {
+      const capture = await viewer.capture(undefined, chosen, wanted);
+      if (own !== attempt) return;
+      const suffix = capture.buffer === "output" ? "" : `-${capture.buffer}`;
+      const name = `${host.fileStem()}${suffix}.${chosen === "jpeg" ? "jpg" : chosen}`;
+      saveFile(captureBlob(capture), name);
+      const { width, height } = capture;
+      host.inform(`Saved ${name}: ${width} x ${height} pixels, ${counted(capture.samples)}`);
+      dialog.close();
+    } catch (error) {
+      if (own !== attempt) return;
+      setSaving(false);
+      viewer.report(error);
+    }
+  };
+
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    if (!isSaving) void run();
+  });
+  cancel.addEventListener("click", () => dialog.close());
+  dialog.addEventListener("click", (event) => {
+    if (event.target === dialog) dialog.close();
+  });
+  dialog.addEventListener("close", () => {
+    attempt += 1;
+    setSaving(false);
+  });
+  return {
+    open() {
+      if (dialog.open) return;
+      const available = viewer.capabilities.captureFormats.value;
+      setOptions(format, [...formats.filter(({ value }) => available.has(value))]);
+      format.value ||= "png";
+      dialog.showModal();
+      update();
+      samples.value ||= "now";
+    },
+  };
+}
+
+function counted(samples: number): string {
+  return samples === 1 ? "1 sample" : `${samples} samples`;
+}
