@@ -140,7 +140,10 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   visible.motion = blend_surfaces(plan, in, gbuffer, composed, blended);
 
   std::optional<gpu::ImageRef> traced;
-  if (takes_over) traced = trace_reference(plan, in);
+  if (takes_over) {
+    plan.only_when([in] { return traces_reference(in); },
+                   [&] { traced = trace_reference(plan, in); });
+  }
   const gpu::History accumulated = accumulate(plan, in, composed.noisy, traced);
   const Exposure exposure = expose(plan, in, composed.hdr, accumulated.current);
   const gpu::ImageRef resolved = temporal_antialias(plan, in, visible, exposure, composed.hdr);

@@ -14,7 +14,10 @@ namespace {
 constexpr VkExtent2D extent{64, 64};
 
 // The dither's triangular distribution is half as wide as an exact mean would need: 1/8 code value.
-constexpr double tolerance = 0.13 / 255.0;
+// Stores to 8 bits may be off by 0.6 of a step instead of 0.5 (Vulkan, fixed-point conversion).
+double tolerance() {
+  return (device().is_cpu() ? 0.13 : 0.23) / 255.0;
+}
 
 class PresentTest : public testing::Test {
  protected:
@@ -57,7 +60,7 @@ TEST_F(PresentTest, DitherKeepsMeanWithinOneCodeValue) {
   const glm::vec3 radiance(0.1f, 0.4f, 0.02f);
   const render::FloatImage image = present(radiance, linear());
   const glm::dvec3 average = mean(image);
-  for (int c = 0; c < 3; ++c) EXPECT_NEAR(average[c], encode(radiance[c]), tolerance) << c;
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(average[c], encode(radiance[c]), tolerance()) << c;
   for (std::size_t i = 0; i < image.rgba.size(); i += 4) {
     ASSERT_NEAR(image.rgba[i], encode(0.1), 1.01 / 255.0);
   }
@@ -66,9 +69,9 @@ TEST_F(PresentTest, DitherKeepsMeanWithinOneCodeValue) {
 TEST_F(PresentTest, ExposureIsInStops) {
   protocol::Settings settings = linear();
   settings.exposure.compensation = 2.0f;
-  EXPECT_NEAR(mean(present(glm::vec3(0.1f), settings)).x, encode(0.4), tolerance);
+  EXPECT_NEAR(mean(present(glm::vec3(0.1f), settings)).x, encode(0.4), tolerance());
   settings.exposure.compensation = -1.0f;
-  EXPECT_NEAR(mean(present(glm::vec3(0.1f), settings)).x, encode(0.05), tolerance);
+  EXPECT_NEAR(mean(present(glm::vec3(0.1f), settings)).x, encode(0.05), tolerance());
 }
 
 TEST_F(PresentTest, BlendsDenoisedAndAccumulatedBySampleCount) {
@@ -90,7 +93,7 @@ TEST_F(PresentTest, BlendsDenoisedAndAccumulatedBySampleCount) {
        {std::pair(0u, 0.9), {8u, 0.5}, {24u, 0.3}, {8000u, 0.1008}}) {
     rig.set_accumulated(samples);
     rig.run();
-    EXPECT_NEAR(mean(rig.read(image)).x, encode(expected), tolerance) << samples;
+    EXPECT_NEAR(mean(rig.read(image)).x, encode(expected), tolerance()) << samples;
   }
   settings.antialiasing.temporal = false;  // nothing filters: the accumulated mean is shown
   settings.shadow_temporal.enabled = settings.shadow_blur.enabled = false;
@@ -98,7 +101,7 @@ TEST_F(PresentTest, BlendsDenoisedAndAccumulatedBySampleCount) {
   rig.set_settings(settings);
   rig.set_accumulated(0);
   rig.run();
-  EXPECT_NEAR(mean(rig.read(image)).x, encode(0.1), tolerance);
+  EXPECT_NEAR(mean(rig.read(image)).x, encode(0.1), tolerance());
 }
 
 TEST_F(PresentTest, ClampsOverexposedAndNegativeValues) {
