@@ -99,8 +99,8 @@ stage.test("viewers see participants, take control, hand it over and release it"
 
 stage.test("a read-only viewer is informed and cannot change anything", async () => {
   const { page } = await watch(viewToken);
-  await page.locator(".control-note").getByText("Your access is read-only").waitFor();
-  await page.locator("#pill", { hasText: "Live, read-only" }).waitFor();
+  await page.locator(".control-note").getByText("View only: you can't change anything.").waitFor();
+  await page.locator("#pill", { hasText: "Live, view only" }).waitFor();
   await screenshot(page, "read_only");
   await expectNothingChanges({ page });
   await openTab(page, "inspect");

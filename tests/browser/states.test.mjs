@@ -36,7 +36,7 @@ stage.test("a version mismatch is reported", async () => {
   });
   const { page } = await stage.open({ context, expectErrors: true });
   await page.locator('#pill[data-state="wrong_version"]').waitFor();
-  await page.getByRole("heading", { name: "Version mismatch" }).waitFor();
+  await page.getByRole("heading", { name: "Page out of date" }).waitFor();
   await screenshot(page, "wrong_version");
   assert.deepEqual(await seriousFindings(page), []);
 });

@@ -8,7 +8,8 @@ differently: point lights of limited range, which Cycles does not have, and, in 
 comparisons, specular lobes. glTF's Fresnel term is Schlick's, Cycles' is exact, and 20 per cent
 higher at 64 degrees from a half vector. The least similarity holds for the first comparison; what
 is missing in it is Cycles' noise, and cutout leaves, which mip maps thin out here. Images
-beside each other and their difference are written to FOLDER. Exit status 77: Blender or NumPy is missing, nothing was compared.
+beside each other and their difference are written to FOLDER. Exit status 77: Blender or NumPy is
+missing, nothing was compared.
 """
 
 import argparse

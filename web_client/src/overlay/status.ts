@@ -61,7 +61,7 @@ function pillLabel(state: ConnectionState, controlState: ControlState): string {
     case "full":
       return "Server full";
     case "wrong_version":
-      return "Version mismatch";
+      return "Page out of date";
     case "forbidden":
       return "No access";
   }
@@ -72,7 +72,7 @@ function liveLabel(controlState: ControlState): string {
     case "may_change":
       return "Live";
     case "read_only":
-      return "Live, read-only";
+      return "Live, view only";
     case "other":
       return `Live, ${controlState.name} is in control`;
     case "unclaimed":
@@ -103,8 +103,8 @@ function noticeFor(viewer: Viewer, state: ConnectionState): Notice | null {
       };
     case "wrong_version":
       return {
-        title: "Version mismatch",
-        detail: `The server uses ${state.detail || "another protocol"}. Reload the page.`,
+        title: "Page out of date",
+        detail: `The server uses ${state.detail || "another protocol"} now. Reload the page.`,
         action: { label: "Reload", run: () => location.reload() },
         dims: true,
       };

@@ -30,7 +30,7 @@ export function describeControl(state: ControlState): string {
     case "may_change":
       return "";
     case "read_only":
-      return "Your access is read-only.";
+      return "View only: you can't change anything.";
     case "other":
       return `${state.name} is in control and can hand it over to you.`;
     case "unclaimed":

@@ -67,7 +67,7 @@ function describeReconnect(
   from: SessionOrigin,
   restores: boolean,
 ): string {
-  if (restores && session === from.session) return "The server restarted. Your view is restored.";
+  if (restores && session === from.session) return "The server restarted. Your view was restored.";
   if (restores) return `Connected to another server. Your view continues in session ${session}.`;
   if (role === "view") return `Connected to another server, session ${session}.`;
   return restore_state === null || restore_state === undefined
