@@ -43,7 +43,7 @@ struct BvhInstance {
   uint root;      // link into the mesh's own hierarchy
   uint instance;  // number: index among the scene's instances
   uint mask;      // number: record of the mesh's alpha mask, or bvh_no_link
-  uint padding0;
+  uint flat_tree; // number, 1: triangles of many instances in world space, which name their own
 };
 
 // Where rays pass through a mesh: all numbers.
@@ -54,19 +54,18 @@ struct BvhMask {
   uint limit;   // lowest alpha, of 255, that stops a ray; or see mask_blended in ray_mask.h
   uint wrap_s;  // values of wrap_*
   uint wrap_t;
-  uint first_uv;        // texel of the triangle buffer: two per triangle, uv of its corners
-  uint first_triangle;  // of the mesh
-  uint padding[8];
+  uint first_uv;  // texel of the triangle buffer: two per triangle of the mesh, uv of its corners
+  uint padding[9];
 };
 
-// Mesh space.
+// Mesh space, or world space in the flat tree.
 struct BvhTriangle {
   vec3 corner0;
   uint triangle;  // number: index within the mesh
   vec3 corner1;
-  uint padding0;
+  uint instance;  // in the flat tree, number: index among the scene's instances
   vec3 corner2;
-  uint padding1;
+  uint mask;  // in the flat tree: as BvhInstance::mask
 };
 
 SHARED_END

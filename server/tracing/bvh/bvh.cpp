@@ -11,6 +11,7 @@
 
 #include "tracing/bvh/alpha_mask.hpp"
 #include "tracing/bvh/hierarchy.hpp"
+#include "tracing/flat_instances.hpp"
 
 namespace heliograph::tracing {
 namespace {
@@ -18,43 +19,38 @@ namespace {
 static_assert(sizeof(shared::BvhNode) == 64 && sizeof(shared::BvhInstance) == 64);
 static_assert(sizeof(shared::BvhMask) == 64 && sizeof(shared::BvhTriangle) == 48);
 
-constexpr std::uint32_t triangles_per_leaf = 4;
-
-struct MeshBvh {
+/// The subtree of a mesh, or of all flat instances.
+struct TriangleTree {
   Hierarchy hierarchy;
   std::vector<shared::BvhTriangle> triangles;  // leaf order
-  std::optional<AlphaMask> mask;
 };
+
+using Corners = std::array<glm::vec3, 3>;
 
 std::uint32_t number(std::size_t value) {
   if (value > shared::bvh_number_mask) throw std::length_error("the scene is too large to trace");
   return shared::bvh_number_tag | static_cast<std::uint32_t>(value);
 }
 
-std::array<glm::vec3, 3> corners(const scene::Mesh& mesh, std::size_t triangle) {
+Corners corners(const scene::Mesh& mesh, std::size_t triangle) {
   const auto corner = [&](std::size_t i) {
     return mesh.vertices[mesh.indices[3 * triangle + i]].position;
   };
   return {corner(0), corner(1), corner(2)};
 }
 
-// Triangles with a non-finite vertex get empty boxes.
-std::vector<scene::Bounds> triangle_boxes(const scene::Mesh& mesh) {
-  std::vector<scene::Bounds> boxes(mesh.indices.size() / 3);
-  for (std::size_t i = 0; i < boxes.size(); ++i) {
-    const auto [a, b, c] = corners(mesh, i);
-    if (!std::isfinite(glm::dot(a, a) + glm::dot(b, b) + glm::dot(c, c))) continue;
-    boxes[i] = {glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
-  }
-  return boxes;
+/// Triangles with a non-finite vertex get empty boxes.
+scene::Bounds triangle_box(const Corners& triangle) {
+  const auto& [a, b, c] = triangle;
+  if (!std::isfinite(glm::dot(a, a) + glm::dot(b, b) + glm::dot(c, c))) return {};
+  return {glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
 }
 
-MeshBvh build_mesh(RTCDevice device, const scene::Mesh& mesh, const shared::Material& material) {
-  MeshBvh result;
-  const Coverage seen = coverage(material);
-  if (seen == Coverage::none) return result;
-  if (seen == Coverage::masked) result.mask = make_alpha_mask(mesh, material);
-  const std::vector<scene::Bounds> boxes = triangle_boxes(mesh);
+TriangleTree build_mesh(RTCDevice device, const scene::Mesh& mesh) {
+  constexpr std::uint32_t triangles_per_leaf = 4;
+  TriangleTree result;
+  std::vector<scene::Bounds> boxes(mesh.indices.size() / 3);
+  for (std::size_t i = 0; i < boxes.size(); ++i) boxes[i] = triangle_box(corners(mesh, i));
   result.triangles.reserve(boxes.size());
   const auto write_leaf = [&](std::span<const std::uint32_t> items) {
     const std::uint32_t link = leaf_link(result.triangles.size(), items.size());
@@ -65,6 +61,71 @@ MeshBvh build_mesh(RTCDevice device, const scene::Mesh& mesh, const shared::Mate
     return link;
   };
   result.hierarchy = build_hierarchy(device, boxes, triangles_per_leaf, write_leaf);
+  return result;
+}
+
+/// The triangles of flat instances, in world space.
+std::vector<shared::BvhTriangle> flat_triangles(const scene::Scene& scene, const Bvh& bvh) {
+  std::vector<shared::BvhTriangle> triangles;
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
+    const BvhMesh& traced = bvh.meshes[scene.instances[i].mesh];
+    const glm::mat4& world = scene.nodes[scene.instances[i].node].world;
+    if (!bvh.flat[i] || !traced.covers || !traceable_inverse(world)) continue;
+    for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
+      const auto [a, b, c] = corners(mesh, t);
+      const auto moved = [&](const glm::vec3& at) {
+        return glm::vec3(world * glm::vec4(at, 1.0f));
+      };
+      triangles.push_back({moved(a), number(t), moved(b), number(i), moved(c), traced.mask});
+    }
+  }
+  return triangles;
+}
+
+/// The part of a triangle on one side of `at`, which lies within `box`.
+scene::Bounds part_of(const Corners& triangle, const scene::Bounds& box, int axis, float at,
+                      bool above) {
+  const auto outside = [&](float c) { return above ? c < at : c > at; };
+  scene::Bounds part;
+  for (int i = 0; i < 3; ++i) {
+    const glm::vec3& from = triangle[static_cast<std::size_t>(i)];
+    const glm::vec3& to = triangle[static_cast<std::size_t>((i + 1) % 3)];
+    if (!outside(from[axis])) part.include(from);
+    if (outside(from[axis]) == outside(to[axis])) continue;
+    glm::vec3 cut = glm::mix(from, to, (at - from[axis]) / (to[axis] - from[axis]));
+    cut[axis] = at;
+    part.include(cut);
+  }
+  if (part.minimum.x > part.maximum.x) {
+    part = box;
+    (above ? part.minimum : part.maximum)[axis] = at;
+    return part;
+  }
+  // Widened for rounding of the cuts.
+  const glm::vec3 slack = 4e-7f * glm::max(glm::abs(box.minimum), glm::abs(box.maximum));
+  return {glm::max(part.minimum - slack, box.minimum), glm::min(part.maximum + slack, box.maximum)};
+}
+
+/// Of all flat instances. A spatial split costs build time and memory that pays in large trees.
+TriangleTree build_flat(RTCDevice device, const std::vector<shared::BvhTriangle>& triangles) {
+  constexpr std::uint32_t triangles_per_leaf = 4;
+  TriangleTree result;
+  std::vector<scene::Bounds> boxes;
+  boxes.reserve(triangles.size());
+  for (const auto& t : triangles) boxes.push_back(triangle_box({t.corner0, t.corner1, t.corner2}));
+  result.triangles.reserve(boxes.size() + boxes.size() / 2);
+  const auto write_leaf = [&](std::span<const std::uint32_t> items) {
+    const std::uint32_t link = leaf_link(result.triangles.size(), items.size());
+    for (const std::uint32_t item : items) result.triangles.push_back(triangles[item]);
+    return link;
+  };
+  const auto split = [&](std::uint32_t item, const scene::Bounds& box, int axis, float at) {
+    const shared::BvhTriangle& t = triangles[item];
+    const Corners cut{t.corner0, t.corner1, t.corner2};
+    return std::array{part_of(cut, box, axis, at, false), part_of(cut, box, axis, at, true)};
+  };
+  result.hierarchy = build_hierarchy(device, boxes, triangles_per_leaf, write_leaf, split);
   return result;
 }
 
@@ -83,63 +144,84 @@ std::size_t append_record(Bvh& bvh, const Record& record) {
   return bvh.records.size() - 1;
 }
 
-BvhMesh append_mesh(Bvh& bvh, const MeshBvh& mesh, std::vector<glm::vec4>& uvs,
-                    std::size_t triangle_texels) {
-  BvhMesh placed;
-  if (mesh.hierarchy.root == shared::bvh_no_link) return placed;
+/// The mask of a mesh, and the uvs of its triangles. @return the number of its record
+std::uint32_t append_mask(Bvh& bvh, const AlphaMask& mask) {
+  const std::size_t first_uv = bvh.triangles.size();
+  for (std::size_t i = 0; i < mask.uvs.size(); i += 3) {
+    bvh.triangles.emplace_back(mask.uvs[i], mask.uvs[i + 1]);
+    bvh.triangles.emplace_back(mask.uvs[i + 2], 0.0f, 0.0f);
+  }
+  bvh.masked = true;
+  return number(append_record(bvh, shared::BvhMask{number(mask.texels),
+                                                   number(mask.width),
+                                                   number(mask.height),
+                                                   number(mask.limit),
+                                                   number(mask.wrap_s),
+                                                   number(mask.wrap_t),
+                                                   number(first_uv),
+                                                   {}}));
+}
+
+/// What rays need of every mesh apart from its tree.
+void append_masks(Bvh& bvh, const scene::Scene& scene) {
+  for (const scene::Mesh& mesh : scene.meshes) {
+    const shared::Material& material = scene.materials[mesh.material];
+    const Coverage seen = coverage(material);
+    BvhMesh& made = bvh.meshes.emplace_back();
+    made.covers = seen != Coverage::none;
+    if (seen == Coverage::masked) made.mask = append_mask(bvh, make_alpha_mask(mesh, material));
+  }
+  // Triangles begin at a whole number of their own size.
+  while (bvh.triangles.size() % shared::bvh_texels_per_triangle != 0) bvh.triangles.emplace_back();
+}
+
+void append_tree(Bvh& bvh, const TriangleTree& tree, BvhMesh& placed) {
+  if (tree.hierarchy.root == shared::bvh_no_link) return;
   const std::size_t first_record = placed.first_record = bvh.records.size();
   const std::size_t first_triangle = placed.first_triangle =
       bvh.triangles.size() / shared::bvh_texels_per_triangle;
-  placed.nodes = mesh.hierarchy.nodes.size();
-  placed.triangles = mesh.triangles.size();
-  placed.root = moved_link(mesh.hierarchy.root, first_record, first_triangle);
-  for (shared::BvhNode node : mesh.hierarchy.nodes) {
+  placed.nodes = tree.hierarchy.nodes.size();
+  placed.triangles = tree.triangles.size();
+  placed.root = moved_link(tree.hierarchy.root, first_record, first_triangle);
+  for (shared::BvhNode node : tree.hierarchy.nodes) {
     node.left = moved_link(node.left, first_record, first_triangle);
     node.right = moved_link(node.right, first_record, first_triangle);
     bvh.records.push_back(node);
   }
-  for (const shared::BvhTriangle& triangle : mesh.triangles) {
+  for (const shared::BvhTriangle& triangle : tree.triangles) {
     for (const glm::vec4& texel : std::bit_cast<std::array<glm::vec4, 3>>(triangle)) {
       bvh.triangles.push_back(texel);
     }
   }
-  if (!mesh.mask) return placed;
-  const AlphaMask& mask = *mesh.mask;
-  placed.mask = number(append_record(bvh, shared::BvhMask{number(mask.texels),
-                                                          number(mask.width),
-                                                          number(mask.height),
-                                                          number(mask.limit),
-                                                          number(mask.wrap_s),
-                                                          number(mask.wrap_t),
-                                                          number(triangle_texels + uvs.size()),
-                                                          number(first_triangle),
-                                                          {}}));
-  for (const shared::BvhTriangle& triangle : mesh.triangles) {
-    const auto* uv = &mask.uvs[3 * std::size_t(triangle.triangle & shared::bvh_number_mask)];
-    uvs.emplace_back(uv[0], uv[1]);
-    uvs.emplace_back(uv[2], 0.0f, 0.0f);
-  }
-  return placed;
+  bvh.mesh_depth = std::max(bvh.mesh_depth, tree.hierarchy.depth);
 }
 
-void append_meshes(Bvh& bvh, const std::vector<MeshBvh>& meshes) {
-  std::size_t records = 0;
-  std::size_t texels = 0;
-  for (const MeshBvh& mesh : meshes) {
-    records += mesh.hierarchy.nodes.size() + 1;
-    texels += mesh.triangles.size() * shared::bvh_texels_per_triangle;
+void append_meshes(Bvh& bvh, const std::vector<TriangleTree>& trees) {
+  std::size_t records = bvh.records.size();
+  std::size_t texels = bvh.triangles.size();
+  for (const TriangleTree& tree : trees) {
+    records += tree.hierarchy.nodes.size();
+    texels += tree.triangles.size() * shared::bvh_texels_per_triangle;
   }
   bvh.records.reserve(records);
   bvh.triangles.reserve(texels);
-  std::vector<glm::vec4> uvs;
-  bvh.meshes.reserve(meshes.size());
-  for (const MeshBvh& mesh : meshes) {
-    bvh.meshes.push_back(append_mesh(bvh, mesh, uvs, texels));
-    bvh.mesh_depth = std::max(bvh.mesh_depth, mesh.hierarchy.depth);
+  for (std::size_t i = 0; i < trees.size(); ++i) append_tree(bvh, trees[i], bvh.meshes[i]);
+}
+
+void append_flat(RTCDevice device, Bvh& bvh, const scene::Scene& scene) {
+  const std::vector<shared::BvhTriangle> triangles = flat_triangles(scene, bvh);
+  for (const auto& t : triangles) {
+    const scene::Bounds box = triangle_box({t.corner0, t.corner1, t.corner2});
+    if (box.minimum.x > box.maximum.x) continue;
+    bvh.flat_bounds.include(box);
   }
-  bvh.first_placed = bvh.records.size();
-  bvh.triangles.insert(bvh.triangles.end(), uvs.begin(), uvs.end());
-  bvh.masked = !uvs.empty();
+  append_tree(bvh, build_flat(device, triangles), bvh.flat_tree);
+}
+
+/// The instance whose mesh is the flat tree.
+shared::BvhInstance flat_instance(const Bvh& bvh) {
+  const glm::mat4 rows(1.0f);
+  return {rows[0], rows[1], rows[2], bvh.flat_tree.root, number(0), shared::bvh_no_link, number(1)};
 }
 
 scene::Bounds world_box(const scene::Bounds& box, const glm::mat4& world) {
@@ -173,17 +255,21 @@ BvhTopLevel build_top_level(RTCDevice device, const Bvh& bvh,
                             std::span<const glm::mat4> worlds,
                             std::span<const scene::Bounds> bounds) {
   BvhTopLevel top;
-  std::vector<scene::Bounds> boxes(worlds.size());
-  std::vector<std::uint32_t> records(worlds.size());
+  std::vector<scene::Bounds> boxes;
+  std::vector<std::uint32_t> records;
+  const auto place = [&](const scene::Bounds& box, const shared::BvhInstance& instance) {
+    boxes.push_back(box);
+    records.push_back(static_cast<std::uint32_t>(bvh.first_placed + top.records.size()));
+    top.records.push_back(std::bit_cast<shared::BvhNode>(instance));
+  };
+  if (bvh.flat_tree.root != shared::bvh_no_link) place(bvh.flat_bounds, flat_instance(bvh));
   for (std::size_t i = 0; i < worlds.size(); ++i) {
     const BvhMesh& mesh = bvh.meshes[mesh_of[i]];
     const auto inverse = traceable_inverse(worlds[i]);
-    if (mesh.root == shared::bvh_no_link || !inverse) continue;
-    boxes[i] = world_box(bounds[mesh_of[i]], worlds[i]);
-    records[i] = static_cast<std::uint32_t>(bvh.first_placed + top.records.size());
+    if (bvh.flat[i] || mesh.root == shared::bvh_no_link || !inverse) continue;
     const glm::mat4 rows = glm::transpose(*inverse);
-    top.records.push_back(std::bit_cast<shared::BvhNode>(
-        shared::BvhInstance{rows[0], rows[1], rows[2], mesh.root, number(i), mesh.mask, 0}));
+    place(world_box(bounds[mesh_of[i]], worlds[i]),
+          {rows[0], rows[1], rows[2], mesh.root, number(i), mesh.mask, number(0)});
   }
   const Hierarchy tree = build_hierarchy(
       device, boxes, 1, [&](auto items) { return leaf_link(records[items[0]], 1); });
@@ -204,14 +290,22 @@ BvhTopLevel build_top_level(RTCDevice device, const Bvh& bvh,
   return top;
 }
 
-Bvh build_bvh(RTCDevice device, const scene::Scene& scene) {
-  std::vector<MeshBvh> meshes(scene.meshes.size());
-  tbb::parallel_for(std::size_t(0), meshes.size(), [&](std::size_t i) {
-    const scene::Mesh& mesh = scene.meshes[i];
-    meshes[i] = build_mesh(device, mesh, scene.materials[mesh.material]);
-  });
+Bvh build_bvh(RTCDevice device, const scene::Scene& scene, const BvhLayout& layout) {
   Bvh bvh;
-  append_meshes(bvh, meshes);
+  bvh.flat = layout.flat ? flat_instances(scene, layout.most_bytes)
+                         : std::vector<bool>(scene.instances.size());
+  append_masks(bvh, scene);
+  std::vector<bool> instanced(scene.meshes.size());
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    if (!bvh.flat[i]) instanced[scene.instances[i].mesh] = true;
+  }
+  std::vector<TriangleTree> trees(scene.meshes.size());
+  tbb::parallel_for(std::size_t(0), trees.size(), [&](std::size_t i) {
+    if (instanced[i] && bvh.meshes[i].covers) trees[i] = build_mesh(device, scene.meshes[i]);
+  });
+  append_meshes(bvh, trees);
+  append_flat(device, bvh, scene);
+  bvh.first_placed = bvh.records.size();
   std::vector<std::uint32_t> mesh_of;
   std::vector<glm::mat4> worlds;
   for (const scene::Instance& instance : scene.instances) {

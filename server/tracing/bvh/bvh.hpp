@@ -15,16 +15,23 @@ namespace heliograph::tracing {
 /// The subtree of a mesh within the hierarchy.
 struct BvhMesh {
   std::uint32_t root = shared::bvh_no_link;  // bvh_no_link: nothing to hit
-  std::uint32_t mask = shared::bvh_no_link;  // index of its mask record
+  std::uint32_t mask = shared::bvh_no_link;  // number of its mask record
+  bool covers = false;                       // false: its material lets all rays pass
   std::size_t first_record = 0;
   std::size_t nodes = 0;
   std::size_t first_triangle = 0;
   std::size_t triangles = 0;
 };
 
+/// What of a scene is one tree in world space, where rays need no instances.
+struct BvhLayout {
+  bool flat = true;                       // what no clip can move
+  std::uint64_t most_bytes = 256u << 20;  // of copies of triangles: flat_instances()
+};
+
 /// A two-level bounding volume hierarchy: a tree over instances, whose leaves link to one tree per
-/// mesh. `records` has nodes, instances and masks of equal size in one texel buffer; `triangles` is
-/// in leaf order, followed by the uvs of masked meshes.
+/// mesh, and one tree of triangles in world space. `records` has nodes, instances and masks of
+/// equal size in one texel buffer; `triangles` is in leaf order, behind the uvs of masked meshes.
 struct Bvh {
   std::vector<shared::BvhNode> records;
   std::vector<glm::vec4> triangles;
@@ -32,6 +39,9 @@ struct Bvh {
   std::uint32_t depth = 0;  // maximum stack depth of traversal, both levels together
   bool masked = false;      // a mesh has partial coverage
   std::vector<BvhMesh> meshes;
+  BvhMesh flat_tree;
+  scene::Bounds flat_bounds;     // world
+  std::vector<bool> flat;        // by instance: whether it is in that tree
   std::size_t first_placed = 0;  // index of the first instance record; the rest is the upper level
   std::uint32_t mesh_depth = 0;  // maximum over the meshes
 };
@@ -56,6 +66,6 @@ BvhTopLevel build_top_level(RTCDevice device, const Bvh& bvh,
                             std::span<const scene::Bounds> bounds);
 
 /// @throws std::exception when the scene is too large or its hierarchy too deep
-Bvh build_bvh(RTCDevice device, const scene::Scene& scene);
+Bvh build_bvh(RTCDevice device, const scene::Scene& scene, const BvhLayout& layout = {});
 
 }  // namespace heliograph::tracing

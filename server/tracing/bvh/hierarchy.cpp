@@ -102,6 +102,35 @@ class Flattener {
   const LeafWriter& write_leaf_;
 };
 
+scene::Bounds to_bounds(const RTCBuildPrimitive& item) {
+  return {{item.lower_x, item.lower_y, item.lower_z}, {item.upper_x, item.upper_y, item.upper_z}};
+}
+
+RTCBounds to_embree(const scene::Bounds& box) {
+  return {box.minimum.x, box.minimum.y, box.minimum.z, 0,
+          box.maximum.x, box.maximum.y, box.maximum.z, 0};
+}
+
+void split_item(const RTCBuildPrimitive* item, unsigned axis, float at, RTCBounds* left,
+                RTCBounds* right, void* splitter) {
+  const auto& split = *static_cast<const ItemSplitter*>(splitter);
+  const auto [below, above] = split(item->primID, to_bounds(*item), static_cast<int>(axis), at);
+  *left = to_embree(below);
+  *right = to_embree(above);
+}
+
+/// Lets Embree cut items, of which there may be half as many more.
+void allow_splits(RTCBuildArguments& arguments, std::vector<RTCBuildPrimitive>& primitives,
+                  const ItemSplitter& split) {
+  primitives.reserve(primitives.size() + primitives.size() / 2);
+  arguments.primitives = primitives.data();
+  arguments.primitiveArrayCapacity = primitives.capacity();
+  arguments.buildQuality = RTC_BUILD_QUALITY_HIGH;
+  arguments.splitPrimitive = split_item;
+  // Handed to the other callbacks, too, which do not read it.
+  arguments.userPtr = const_cast<ItemSplitter*>(&split);
+}
+
 RTCBuildArguments build_arguments(RTCBVH bvh, std::vector<RTCBuildPrimitive>& primitives,
                                   std::uint32_t leaf_size) {
   RTCBuildArguments arguments = rtcDefaultBuildArguments();
@@ -133,13 +162,15 @@ std::uint32_t leaf_link(std::size_t first, std::size_t count) {
 }
 
 Hierarchy build_hierarchy(RTCDevice device, std::span<const scene::Bounds> boxes,
-                          std::uint32_t leaf_size, const LeafWriter& write_leaf) {
+                          std::uint32_t leaf_size, const LeafWriter& write_leaf,
+                          const ItemSplitter& split) {
   Hierarchy hierarchy;
   std::vector<RTCBuildPrimitive> primitives = to_primitives(boxes);
   if (primitives.empty()) return hierarchy;
   const EmbreeHandle<RTCBVH> bvh(rtcNewBVH(device));
   check_embree(device, "prepare a hierarchy");
-  const RTCBuildArguments arguments = build_arguments(bvh.get(), primitives, leaf_size);
+  RTCBuildArguments arguments = build_arguments(bvh.get(), primitives, leaf_size);
+  if (split) allow_splits(arguments, primitives, split);
   const void* root = rtcBuildBVH(&arguments);
   check_embree(device, "build a hierarchy");
   hierarchy.nodes.reserve(primitives.size());

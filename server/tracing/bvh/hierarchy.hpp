@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <span>
@@ -25,10 +26,16 @@ std::uint32_t leaf_link(std::size_t first, std::size_t count);
 /// Called once per leaf, in depth-first order, with indices into `boxes`; returns the leaf's link.
 using LeafWriter = std::function<std::uint32_t(std::span<const std::uint32_t> items)>;
 
+/// The parts of item `item` on both sides of `at` along `axis`, each within `box`.
+using ItemSplitter = std::function<std::array<scene::Bounds, 2>(
+    std::uint32_t item, const scene::Bounds& box, int axis, float at)>;
+
 /// Surface area heuristic, binned (Wald 2007), by Embree's builder. Boxes that are empty or not
 /// finite are left out. At most `leaf_size` (<= 8) items share a leaf. Thread safe.
+/// With `split`, large items may lie in several leaves (spatial splits; Stich et al. 2009).
 /// @throws std::runtime_error when the tree is too deep for the traversal stack
 Hierarchy build_hierarchy(RTCDevice device, std::span<const scene::Bounds> boxes,
-                          std::uint32_t leaf_size, const LeafWriter& write_leaf);
+                          std::uint32_t leaf_size, const LeafWriter& write_leaf,
+                          const ItemSplitter& split = {});
 
 }  // namespace heliograph::tracing

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "tracing/bvh/bvh.hpp"
-#include "tracing/embree/embree_layout.hpp"
+#include "tracing/flat_instances.hpp"
 
 namespace heliograph::tracing {
 namespace {

@@ -22,11 +22,19 @@ struct Line {
   vec3 origin;
   vec3 direction;
   vec3 inverse;  // of the direction, finite
+  vec3 across;   // two directions that are perpendicular to it
+  vec3 down;
 };
 
 Line make_line(vec3 origin, vec3 direction) {
   const vec3 sign_or_one = mix(vec3(-1.0), vec3(1.0), greaterThanEqual(direction, vec3(0.0)));
-  return Line(origin, direction, sign_or_one / max(abs(direction), vec3(1e-20)));
+  const vec3 size = abs(direction);
+  // Across the axis that it follows least.
+  const vec3 across = size.x <= min(size.y, size.z) ? vec3(0.0, -direction.z, direction.y)
+                      : size.y <= size.z            ? vec3(direction.z, 0.0, -direction.x)
+                                                    : vec3(-direction.y, direction.x, 0.0);
+  return Line(origin, direction, sign_or_one / max(size, vec3(1e-20)), across,
+              cross(direction, across));
 }
 
 bool is_node(uint link) { return link != bvh_no_link && (link & bvh_leaf_bit) == 0u; }
@@ -47,10 +55,10 @@ vec2 box_interval(vec2 x, vec2 y, vec2 z, Line line, vec2 range) {
 
 uint blending = 0u;  // of the ray
 
-// The mask's alpha, of 255, at barycentric (u, v) of the triangle at `slot`.
-uint mask_alpha(uvec4 texels, uvec4 lookup, uint slot, float u, float v) {
+// The mask's alpha, of 255, at barycentric (u, v) of a triangle.
+uint mask_alpha(uvec4 texels, uvec4 lookup, uint triangle, float u, float v) {
   if (texels.y == 0u) return 255u;
-  const int first_uv = int(lookup.z + 2u * (slot - lookup.w));
+  const int first_uv = int(lookup.z + 2u * triangle);
   const vec4 corners01 = texelFetch(triangles, first_uv);
   const vec2 corner2 = texelFetch(triangles, first_uv + 1).xy;
   const vec2 uv = (1.0 - u - v) * corners01.xy + u * corners01.zw + v * corner2;
@@ -59,42 +67,49 @@ uint mask_alpha(uvec4 texels, uvec4 lookup, uint slot, float u, float v) {
   return bitfieldExtract(word, int(8u * (offset & 3u)), 8);
 }
 
-// Whether the mask lets a ray through barycentric tuv.yz of the triangle at `slot` end there.
-bool mask_stops(uint mask, uint slot, vec3 tuv, uint instance, uint triangle) {
+// Whether the mask lets a ray through barycentric tuv.yz of the triangle end there.
+bool mask_stops(uint mask, vec3 tuv, uint instance, uint triangle) {
   const uvec4 texels = record_bits(mask, 0u) & bvh_number_mask;
   const uvec4 lookup = record_bits(mask, 1u) & bvh_number_mask;
-  const uint alpha = mask_alpha(texels, lookup, slot, tuv.y, tuv.z);
+  const uint alpha = mask_alpha(texels, lookup, triangle, tuv.y, tuv.z);
   return alpha_stops(alpha, texels.w, blending, instance, triangle);
 }
 
-// On which side of the edge from a to b, both seen from the line's origin, the line passes: in
-// proportion to the volume between them. The same edge reversed gives exactly the opposite sign, so
-// that no line slips through between two triangles (Davidovic, Engelhardt, Georgiev and Slusallek,
-// GI 2012).
-float side_of_edge(vec3 a, vec3 b, vec3 direction) {
-  const vec3 along = b - a, sum = a + b;
-  precise const float x = fma(along.y, sum.z, -(along.z * sum.y));
-  precise const float y = fma(along.z, sum.x, -(along.x * sum.z));
-  precise const float z = fma(along.x, sum.y, -(along.y * sum.x));
-  precise const float side = fma(x, direction.x, fma(y, direction.y, z * direction.z));
+// Where the line sees a place relative to its origin: the line itself lies at 0. Every triangle
+// with a corner there gets the same numbers.
+vec2 seen_at(vec3 place, Line line) {
+  precise const vec2 seen = vec2(dot(place, line.across), dot(place, line.down));
+  return seen;
+}
+
+// On which side of the edge from a to b, as seen_at(), the line passes: in proportion to the area
+// between them. The same edge reversed gives exactly the opposite sign, and rounding is small
+// beside a corner that the line just misses, so that it slips through neither between triangles
+// nor at their corners (Woop, Benthin and Wald, JCGT 2013).
+float side_of_edge(vec2 a, vec2 b) {
+  precise const float forth = a.x * b.y;
+  precise const float back = a.y * b.x;
+  precise const float side = forth - back;
   return side;
 }
 
-// Both faces: (t, u, v) where the plane is met, and whether inside.
-bool triangle_hit(uint slot, Line line, vec2 range, out vec3 tuv, out uint triangle) {
+// Both faces: (t, u, v) where the plane is met, and whether inside. `words`: those beside corners.
+bool triangle_hit(uint slot, Line line, vec2 range, out vec3 tuv, out uvec3 words) {
   const int texel = int(slot * bvh_texels_per_triangle);
   const vec4 first = texelFetch(triangles, texel);
-  triangle = floatBitsToUint(first.w) & bvh_number_mask;
-  const vec3 corner0 = first.xyz;
-  const vec3 corner1 = texelFetch(triangles, texel + 1).xyz;
-  const vec3 corner2 = texelFetch(triangles, texel + 2).xyz;
-  const vec3 a = corner0 - line.origin, b = corner1 - line.origin, c = corner2 - line.origin;
-  const vec3 sides = vec3(side_of_edge(b, c, line.direction), side_of_edge(c, a, line.direction),
-                          side_of_edge(a, b, line.direction));
+  const vec4 second = texelFetch(triangles, texel + 1);
+  const vec4 third = texelFetch(triangles, texel + 2);
+  words = floatBitsToUint(vec3(first.w, second.w, third.w));
+  const vec3 corner0 = first.xyz, corner1 = second.xyz, corner2 = third.xyz;
+  const vec3 to_corner0 = corner0 - line.origin;
+  const vec2 a = seen_at(to_corner0, line);
+  const vec2 b = seen_at(corner1 - line.origin, line);
+  const vec2 c = seen_at(corner2 - line.origin, line);
+  const vec3 sides = vec3(side_of_edge(b, c), side_of_edge(c, a), side_of_edge(a, b));
   const vec3 normal = cross(corner1 - corner0, corner2 - corner0);
   const float slope = dot(normal, line.direction);
   const float total = sides.x + sides.y + sides.z;
-  tuv = vec3(dot(normal, a) / slope, sides.yz / total);
+  tuv = vec3(dot(normal, to_corner0) / slope, sides.yz / total);
   const bool inside = all(greaterThanEqual(sides, vec3(0.0))) || all(lessThanEqual(sides, vec3(0.0)));
   return inside && slope != 0.0 && total != 0.0 && tuv.x > range.x && tuv.x < range.y;
 }
@@ -133,32 +148,32 @@ uint descend(uint link, Line line, vec2 range) {
   return link;
 }
 
+void set_hit(vec3 tuv, uvec3 words, inout Hit hit) {
+  hit.t = tuv.x;
+  hit.u = tuv.y;
+  hit.v = tuv.z;
+  hit.triangle = words.x & bvh_number_mask;
+  hit.instance = words.y & bvh_number_mask;
+}
+
 // Tests a leaf's triangles up to the first that may be masked away. What remains of the leaf comes
 // back as a link: looking up masks between triangles would cost every lane, masked or not.
 uint test_leaf(uint link, Line line, float t_min, uvec4 placed, inout Hit hit) {
   uint slot = link & bvh_leaf_first_mask;
   const uint end = slot + ((link >> bvh_leaf_count_shift) & bvh_leaf_count_mask) + 1u;
-  const bool masked = placed.z != bvh_no_link;
-  bool has_hit = false;
+  const bool in_flat_tree = (placed.w & bvh_number_mask) != 0u;
+  bool masked = false;
   vec3 tuv = vec3(0.0);
-  uint triangle = 0u;
-  for (; slot < end && !(has_hit && (ANY_HIT || masked)); ++slot) {
-    vec3 candidate;
-    uint number;
-    const vec2 range = vec2(t_min, has_hit ? tuv.x : hit.t);
-    if (!triangle_hit(slot, line, range, candidate, number)) continue;
-    has_hit = true;
-    tuv = candidate;
-    triangle = number;
+  uvec3 words = uvec3(0u);
+  for (; slot < end && !masked && !(ANY_HIT && hit.instance != hit_none); ++slot) {
+    if (!triangle_hit(slot, line, vec2(t_min, hit.t), tuv, words)) continue;
+    if (!in_flat_tree) words.yz = placed.yz;
+    masked = words.z != bvh_no_link;
+    if (!masked) set_hit(tuv, words, hit);
   }
-  const uint instance = placed.y & bvh_number_mask;
-  if (has_hit && (!masked || mask_stops(placed.z & bvh_number_mask, slot - 1u, tuv, instance,
-                                      triangle))) {
-    hit.t = tuv.x;
-    hit.u = tuv.y;
-    hit.v = tuv.z;
-    hit.instance = instance;
-    hit.triangle = triangle;
+  if (masked && mask_stops(words.z & bvh_number_mask, tuv, words.y & bvh_number_mask,
+                           words.x & bvh_number_mask)) {
+    set_hit(tuv, words, hit);
   }
   if (slot == end) return pop();
   return bvh_leaf_bit | bvh_number_tag | (end - slot - 1u) << bvh_leaf_count_shift | slot;
@@ -183,7 +198,7 @@ Hit trace(Ray ray) {
     instance_link = descend(instance_link, world, vec2(ray.t_min, hit.t));
     if (instance_link == bvh_no_link) return hit;
     const uint record = instance_link & bvh_leaf_first_mask;
-    const uvec4 placed = record_bits(record, 3u);  // root, instance, mask
+    const uvec4 placed = record_bits(record, 3u);  // root, instance, mask, flat_tree
     const Line line = into_mesh(record, world);
     push(bvh_no_link);
     uint link = placed.x;

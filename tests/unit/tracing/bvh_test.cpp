@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <map>
 #include <utility>
@@ -87,7 +88,10 @@ std::vector<shared::BvhInstance> instances_below(const Bvh& bvh, std::uint32_t l
 
 class BvhTest : public testing::Test {
  protected:
-  Bvh build(const scene::Scene& scene) const { return build_bvh(device_.get(), scene); }
+  /// All instances as such, unless `layout` says otherwise.
+  Bvh build(const scene::Scene& scene, const BvhLayout& layout = {.flat = false}) const {
+    return build_bvh(device_.get(), scene, layout);
+  }
   EmbreeHandle<RTCDevice> device_ = make_embree_device();
 };
 
@@ -111,6 +115,56 @@ TEST_F(BvhTest, ContainsEveryTriangleOnceWithinItsBoxes) {
   EXPECT_EQ(placed.size(), scene.instances.size());
   EXPECT_TRUE(bvh.masked);
   EXPECT_LE(bvh.depth, shared::bvh_stack_size);
+}
+
+/// Checks that leaves under `link` hold all triangles of instances that rays can hit, at their
+/// places in the world.
+void check_flat(const Bvh& bvh, const scene::Scene& scene) {
+  std::map<std::pair<std::uint32_t, std::uint32_t>, shared::BvhTriangle> seen;
+  const BvhMesh& tree = bvh.flat_tree;
+  for (std::size_t i = tree.first_triangle; i < tree.first_triangle + tree.triangles; ++i) {
+    const shared::BvhTriangle triangle = triangle_at(bvh, i);
+    seen[{triangle.instance & shared::bvh_number_mask,
+          triangle.triangle & shared::bvh_number_mask}] = triangle;
+  }
+  std::size_t expected = 0;
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+    const scene::Mesh& mesh = scene.meshes.at(scene.instances[i].mesh);
+    const glm::mat4& world = scene.nodes.at(scene.instances[i].node).world;
+    expected += mesh.indices.size() / 3;
+    for (std::uint32_t t = 0; t < mesh.indices.size() / 3; ++t) {
+      const auto found = seen.find({i, t});
+      ASSERT_NE(found, seen.end()) << "instance " << i << ", triangle " << t;
+      const glm::vec3 corner(
+          world * glm::vec4(mesh.vertices[mesh.indices[3 * std::size_t(t)]].position, 1.0f));
+      EXPECT_LT(glm::distance(found->second.corner0, corner), 1e-5f * (1.0f + glm::length(corner)));
+      EXPECT_EQ(found->second.mask, bvh.meshes[scene.instances[i].mesh].mask);
+    }
+  }
+  EXPECT_EQ(seen.size(), expected);
+}
+
+TEST_F(BvhTest, StaticInstancesAreOneTreeInWorldSpace) {
+  const scene::Scene scene = two_level_scene(1);
+  const Bvh bvh = build(scene, {});
+  const auto instances = instances_below(bvh, bvh.root);
+  ASSERT_EQ(instances.size(), 1u);
+  EXPECT_EQ(instances[0].flat_tree & shared::bvh_number_mask, 1u);
+  EXPECT_EQ(instances[0].root, bvh.flat_tree.root);
+  check_flat(bvh, scene);
+  EXPECT_TRUE(bvh.masked);
+  EXPECT_LE(bvh.depth, shared::bvh_stack_size);
+}
+
+TEST_F(BvhTest, LargeCopiesStayInstances) {
+  scene::Scene scene;
+  const std::uint32_t copied = add_mesh(scene, sphere(8), plain_material());
+  place(scene, copied, glm::mat4(1.0f));
+  place(scene, copied, glm::translate(glm::mat4(1.0f), {3, 0, 0}));
+  place(scene, add_mesh(scene, quad(), plain_material()), glm::mat4(1.0f));
+  const Bvh bvh = build(scene, {.most_bytes = 1000});
+  EXPECT_EQ(bvh.flat, (std::vector<bool>{false, false, true}));
+  EXPECT_EQ(instances_below(bvh, bvh.root).size(), 3u);
 }
 
 TEST_F(BvhTest, LinksAreNormalFloats) {

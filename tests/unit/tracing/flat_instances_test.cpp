@@ -1,4 +1,4 @@
-#include "tracing/embree/embree_layout.hpp"
+#include "tracing/flat_instances.hpp"
 
 #include <gtest/gtest.h>
 
