@@ -26,6 +26,7 @@ layout(set = 1, binding = 11, std430) writeonly buffer MirrorRays { Ray mirror_r
 layout(push_constant) uniform Constants {
   float max_roughness;  // below 0: no reflections are traced
   float rough_rate;     // fraction of the rays that rough surfaces reflect which are traced
+  uint gathers;         // 1: rays of the ambient stream gather indirect light
 };
 
 vec2 pair(ivec2 pixel, uint dimension) {
@@ -67,12 +68,12 @@ Ray shadow_ray(HitSurface s, SurfaceMaterial m, float view_z, vec3 throughput, i
   return carrying(ray, pixel, throughput * sum);
 }
 
-/// `light` comes along it.
+/// `light` comes along it, or is what the light that it gathers is multiplied by.
 Ray ambient_ray(HitSurface s, SurfaceMaterial m, float view_z, vec3 light, ivec2 pixel,
                 out bool valid) {
   vec3 direction = sample_cosine(m.normal, pair(pixel, 42u));
-  Ray ray = ray_along(s, view_z, direction, frame.ambient_radius);
-  bool open = !enabled(frame_ambient_occlusion);
+  Ray ray = ray_along(s, view_z, direction, gathers != 0u ? 1e30 : frame.ambient_radius);
+  bool open = gathers == 0u && !enabled(frame_ambient_occlusion);
   if (open) ray.t_max = 0.0;
   valid = (open || dot(direction, m.geometric) > 0.0) && light != vec3(0.0);
   return carrying(ray, pixel, light);
@@ -99,6 +100,7 @@ void main() {
     float view_z = -(frame.view * vec4(s.position, 1.0)).z;
     shadow = shadow_ray(s, m, view_z, throughput, pixel, lit);
     vec3 around = enabled(frame_environment_diffuse) ? environment_diffuse(m) : vec3(0.0);
+    if (gathers != 0u) around = wide_albedo(m);
     if (traces_specular(specular_roughness(m), max_roughness)) {
       SpecularSample drawn = sample_specular(m, pair(pixel, 43u));
       float rate = reflection_rate(specular_roughness(m), s.metallic);
@@ -106,10 +108,13 @@ void main() {
                 random_number(uvec2(pixel), frame.sample_index, 50u, frame.seed) < rate;
       specular = carrying(ray_along(s, view_z, drawn.direction, 1e30), pixel,
                           throughput * drawn.weight / rate);
+    } else if (gathers != 0u) {
+      around += m.specular_albedo;
     } else if (enabled(frame_environment_specular)) {
       around += environment_specular(m);
     }
-    ambient = ambient_ray(s, m, view_z, throughput * around * s.occlusion, pixel, open);
+    ambient = ambient_ray(s, m, view_z, throughput * around * (gathers != 0u ? 1.0 : s.occlusion),
+                          pixel, open);
     imageStore(behind, pixel, vec4(seen.rgb, view_z));
     imageStore(surface, pixel, vec4(specular_roughness(m), s.metallic, 0.0, 0.0));
   }

@@ -137,7 +137,7 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   const gpu::ImageRef background = draw_skybox(plan, in, gbuffer);
   const Composed composed = compose(plan, in, gbuffer, noisy, denoised, background);
   GBuffer visible = gbuffer;
-  visible.motion = blend_surfaces(plan, in, gbuffer, composed, blended);
+  visible.motion = blend_surfaces(plan, in, gbuffer, composed, cache, blended);
 
   std::optional<gpu::ImageRef> traced;
   if (takes_over) {

@@ -221,7 +221,7 @@ class KernelComparison {
     side.shadows = render::trace_shadows(plan, in, gbuffer, {});
     side.specular = render::trace_specular(plan, in, gbuffer, {});
     const render::Composed composed = compose(host, gbuffer, side);
-    side.motion = render::blend_surfaces(plan, in, gbuffer, composed, blended);
+    side.motion = render::blend_surfaces(plan, in, gbuffer, composed, {}, blended);
     side.hdr = composed.hdr;
     return side;
   }

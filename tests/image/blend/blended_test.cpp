@@ -130,6 +130,38 @@ TEST_P(BlendedRays, AmbientOcclusionIsProportionalToAlpha) {
   EXPECT_NEAR(center_mean(rig, settings, 48, "blended_sky").x, 0.7f * open, 0.02f * open);
 }
 
+/// A closed room of 4 m with a light behind a pane that it does not reach the front of.
+std::shared_ptr<const scene::Scene> room_with_pane() {
+  SceneBuilder builder;
+  const std::array<std::array<glm::vec3, 4>, 6> walls{
+      {{{{-2, -2, 2}, {2, -2, 2}, {2, -2, -2}, {-2, -2, -2}}},
+       {{{-2, 2, -2}, {2, 2, -2}, {2, 2, 2}, {-2, 2, 2}}},
+       {{{-2, -2, -2}, {2, -2, -2}, {2, 2, -2}, {-2, 2, -2}}},
+       {{{2, -2, 2}, {-2, -2, 2}, {-2, 2, 2}, {2, 2, 2}}},
+       {{{-2, -2, 2}, {-2, -2, -2}, {-2, 2, -2}, {-2, 2, 2}}},
+       {{{2, -2, -2}, {2, -2, 2}, {2, 2, 2}, {2, 2, -2}}}}};
+  builder.place(builder.add_quads(walls, surface({0.7f, 0.5f, 0.3f})));
+  shared::Material front = surface(glm::vec3(0.8f));
+  front.base_color.w = 0.8f;
+  front.flags = shared::material_alpha_blend;
+  builder.place(builder.add_quad({{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}}, front));
+  builder.add_point_light({0, 1.4f, -1}, glm::vec3(2.0f));
+  return builder.build();
+}
+
+TEST(BlendedLight, GathersIndirectLightAsTheReferenceDoes) {
+  RendererRig rig(room_with_pane(), scene::constant_environment(glm::vec3(0.0f)),
+                  look({0, 0, 1.9f}, {0, 0, 0}, 40.0f), 48, 48);
+  protocol::Settings reference = path_traced(protocol::ReferenceScope::full);
+  reference.reference.bounces = 16;
+  const glm::vec3 truth = center_mean(rig, reference, 256, "blended_indirect_reference");
+  protocol::Settings settings;
+  settings.accumulation.max_samples = 4096;
+  settings.antialiasing.temporal = false;
+  const glm::vec3 got = center_mean(rig, settings, 160, "blended_indirect");
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(got[c], truth[c], 0.06f * truth[c]) << c;
+}
+
 /// Reflections of a rough blended pane over frames of a moving view.
 struct MovingReflections {
   double mean = 0.0;

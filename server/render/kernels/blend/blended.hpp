@@ -5,6 +5,7 @@
 #include "render/kernels/common/frame_job.hpp"
 #include "render/kernels/common/ray_sink.hpp"
 #include "render/resources/host_tables.hpp"
+#include "shaders/shared/radiance_cache.h"
 
 /// Blended surfaces on all processors, in vectors.
 namespace heliograph::render::kernels {
@@ -79,13 +80,31 @@ struct BlendedLightBindings {
   RaySink<Stage> shadows, ambient, specular;
 };
 struct BlendedLightConstants {
-  float max_roughness;  // below 0: no reflections are traced
-  float rough_rate;     // fraction of the rays that rough surfaces reflect which are traced
+  float max_roughness;    // below 0: no reflections are traced
+  float rough_rate;       // fraction of the rays that rough surfaces reflect which are traced
+  std::uint32_t gathers;  // 1: rays of the ambient stream gather indirect light
 };
 struct BlendedLightJob : FrameJob<BlendedLightBindings, BlendedLightConstants> {
   LitScene lit_scene;
 };
 void blended_light(const BlendedLightJob& job);
+
+/// shaders/blend/blended_gather.comp
+template <class Stage>
+struct BlendedGatherBindings {
+  RaySource<Stage> rays;
+  gpu::ReadBuffer<Stage, shared::Hit> hits;
+  gpu::ReadWriteBuffer<Stage, std::uint32_t> keys;
+  gpu::ReadWriteBuffer<Stage, shared::RadianceCell> cells;
+  gpu::ReadWrite<Stage> radiance;  // rgba32f
+};
+struct BlendedGatherJob : FrameJob<BlendedGatherBindings, shared::RadianceCacheConstants> {
+  bool layered;  // materials of the scene have layers
+  SceneView scene;
+  const Environment& environment;
+  LobeTables tables;
+};
+void blended_gather(const BlendedGatherJob& job);
 
 /// shaders/blend/blended_over.comp
 template <class Stage>

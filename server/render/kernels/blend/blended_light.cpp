@@ -54,8 +54,11 @@ class BlendedLight {
     ray.t_min = zero();
     ray.pixel = view.pixel;
     if (enabled(shared::frame_direct)) add_shadow(s, m, pixel, throughput, lanes, ray, to.shadows);
+    const bool gathers = job_.constants.gathers != 0;
     Float3 around = numbers(0.0f);
-    if (enabled(shared::frame_environment_diffuse)) {
+    if (gathers) {
+      around = wide_albedo(m);
+    } else if (enabled(shared::frame_environment_diffuse)) {
       around = wide_albedo(m) * environment_.irradiance(m.normal);
     }
     const Float roughness = narrower_roughness(m);
@@ -66,13 +69,16 @@ class BlendedLight {
       const Float rate = reflection_rate(roughness, s.metallic);
       add_specular(m, pixel, throughput, rate, traced, ray, to.specular);
     }
-    if (enabled(shared::frame_environment_specular) && !all(traced)) {
+    if (gathers && !all(traced)) {
+      around = select(traced, around, around + m.specular_albedo);
+    } else if (enabled(shared::frame_environment_specular) && !all(traced)) {
       const Float3 light = environment_specular(m, [&](const Float3& normal, Float of) HWY_ATTR {
         return environment_.reflection(reflect(-m.eye, normal), of);
       });
       around = select(traced, around, around + light);
     }
-    add_ambient(m, pixel, throughput * around * s.occlusion, lanes, ray, to.ambient);
+    const Float occlusion = gathers ? one() : s.occlusion;
+    add_ambient(m, pixel, throughput * around * occlusion, lanes, ray, to.ambient);
     store(pixel, lanes, {seen.x, seen.y, seen.z, view_z},
           pack_unorm8({roughness, s.metallic, zero(), zero()}));
   }
@@ -140,14 +146,15 @@ class BlendedLight {
     to.add(ray, hn::And(lanes, hn::Gt(largest_of(drawn.weight), zero())));
   }
 
-  /// `light` comes along it.
+  /// `light` comes along it, or is what the light that it gathers is multiplied by.
   HWY_INLINE void add_ambient(const Material& m, const PixelLanes& pixel, const Float3& light,
                               Mask lanes, RayLanes ray, RayBatch& to) const {
     Float u, v;
     around_.at(as_unsigned(pixel.x), as_unsigned(pixel.y), u, v);
     ray.direction = sample_cosine(m.normal, u, v);
-    const bool open = !enabled(shared::frame_ambient_occlusion);
-    ray.t_max = open ? zero() : number(job_.frame.ambient_radius);
+    const bool gathers = job_.constants.gathers != 0;
+    const bool open = !gathers && !enabled(shared::frame_ambient_occlusion);
+    ray.t_max = number(gathers ? 1e30f : open ? 0.0f : job_.frame.ambient_radius);
     ray.user = light;
     const auto differs = [](Float c) HWY_ATTR { return hn::Ne(c, zero()); };
     Mask valid =

@@ -48,11 +48,12 @@ glm::uvec4 blended_region(const FrameInputs& in) {
 class BlendedSurfaces {
  public:
   BlendedSurfaces(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                  const BlendedImages& images)
+                  const BlendedImages& images, const std::optional<RadianceCache>& cache)
       : plan_(plan),
         in_(in),
         gbuffer_(gbuffer),
         to_(images),
+        cache_(cache),
         pixels_(plan.extent().width * plan.extent().height),
         lit_(declare_rays(plan, "blended.lit", pixels_, tracing::RayKind::camera)) {}
 
@@ -95,7 +96,9 @@ class BlendedSurfaces {
   /// The light on the surface that was chosen in each pixel.
   void light() {
     const auto shadows = declare_rays(plan_, "blended.shadows", pixels_, tracing::RayKind::shadow);
-    const auto ambient = declare_rays(plan_, "blended.ambient", pixels_, tracing::RayKind::ambient);
+    const auto ambient =
+        declare_rays(plan_, "blended.ambient", pixels_,
+                     cache_ ? tracing::RayKind::reflection : tracing::RayKind::ambient);
     const auto reflected =
         declare_rays(plan_, "blended.specular", pixels_, tracing::RayKind::reflection);
     for (const auto* stream : {&shadows, &ambient, &reflected}) {
@@ -111,11 +114,12 @@ class BlendedSurfaces {
                                               .shadows = ray_sink(shadows),
                                               .ambient = ray_sink(ambient),
                                               .specular = ray_sink(reflected)})
-        .constants([in = in_, traced] {
+        .constants([in = in_, traced, gathers = cache_.has_value()] {
           // Where other surfaces leave samples out, as in their plan.
           const bool fewer = in.settings.sampling.specular && leaves_samples_out(in);
           return kernels::BlendedLightConstants{traced ? in.settings.specular.max_roughness : -1.0f,
-                                                fewer ? 1.0f / shared::plan_quiet_factor : 1.0f};
+                                                fewer ? 1.0f / shared::plan_quiet_factor : 1.0f,
+                                                gathers};
         })
         .dispatch_indirect(lit_.count, ray_groups_offset)
         .host([in = in_](const kernels::BlendedLightJob::Pass& pass) {
@@ -123,7 +127,11 @@ class BlendedSurfaces {
           kernels::blended_light({pass, in.constants, lit_scene(in, lights)});
         });
     add_unoccluded_light(plan_, in_, "blended.shadows", shadows, to_.radiance);
-    add_unoccluded_light(plan_, in_, "blended.ambient", ambient, to_.radiance);
+    if (cache_) {
+      gather(ambient);
+    } else {
+      add_unoccluded_light(plan_, in_, "blended.ambient", ambient, to_.radiance);
+    }
     if (traced) {
       trace_reflections(plan_, in_, "blended.specular", reflected, gbuffer_, to_.surface,
                         to_.transmittance, to_.specular);
@@ -143,6 +151,26 @@ class BlendedSurfaces {
  private:
   gpu::PassBuilder pass(const std::string& name, const gpu::ShaderBinary& shader) {
     return plan_.pass(name, in_.program(shader, in_.scene.features));
+  }
+
+  /// Indirect light along `rays`.
+  void gather(const tracing::RayStream& rays) {
+    const auto hits = plan_.buffer("blended.gathered", sizeof(shared::Hit) * rays.capacity, storage,
+                                   gpu::Memory::device);
+    in_.tracer.trace_closest(plan_, "blended.gather.trace", in_.structure, rays, hits);
+    pass("blended.gather", shaders::blended_gather)
+        .bind<kernels::BlendedGatherBindings>({.rays = ray_source(rays),
+                                               .hits = hits,
+                                               .keys = cache_->keys,
+                                               .cells = cache_->cells,
+                                               .radiance = to_.radiance})
+        .constants([in = in_] { return cache_constants(in); })
+        .dispatch_indirect(rays.count, ray_groups_offset)
+        .host([in = in_](const kernels::BlendedGatherJob::Pass& pass) {
+          kernels::blended_gather({pass, in.constants, kernels::has_layers(in.scene.features),
+                                   kernels::view_scene(in.scene, in.tables, in.moving),
+                                   host_environment(in), in.lobe_tables()});
+        });
   }
 
   void add_surfaces(std::uint32_t round, const tracing::RayStream& rays, gpu::BufferRef hits,
@@ -171,6 +199,7 @@ class BlendedSurfaces {
   const FrameInputs& in_;
   const GBuffer& gbuffer_;
   BlendedImages to_;
+  std::optional<RadianceCache> cache_;
   std::uint32_t pixels_;
   tracing::RayStream lit_;  // the pixels that have a surface to light, each once
 };
@@ -197,10 +226,11 @@ kernels::LitScene lit_scene(const FrameInputs& in, std::span<const shared::Light
 }
 
 gpu::ImageRef blend_surfaces(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                             const Composed& composed, const BlendedImages* drawn) {
+                             const Composed& composed, const std::optional<RadianceCache>& cache,
+                             const BlendedImages* drawn) {
   if (!has_blends(in)) return gbuffer.motion;
   const BlendedImages images = drawn ? *drawn : declare_blended(plan);
-  BlendedSurfaces blended(plan, in, gbuffer, images);
+  BlendedSurfaces blended(plan, in, gbuffer, images, cache);
   drawn ? blended.list() : blended.find();
   blended.light();
   blended.compose_over(composed.hdr);

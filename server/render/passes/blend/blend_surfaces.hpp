@@ -3,6 +3,7 @@
 #include "render/kernels/blend/blended.hpp"
 #include "render/passes/compose/compose.hpp"
 #include "render/passes/frame_inputs.hpp"
+#include "render/passes/indirect/radiance_cache.hpp"
 
 namespace heliograph::render {
 
@@ -47,10 +48,13 @@ kernels::LitScene lit_scene(const FrameInputs& in, std::span<const shared::Light
 /// G-buffer's surfaces, by rays through the pixels or by the host's rasteriser (draw_gbuffer), so
 /// that no order of drawing matters. They are lit as others are, by one ray of each kind in every
 /// pixel, without a denoiser; rough ones reflect fewer in frames that leave samples out.
+/// @param cache where indirect light comes from; without one it is the environment's, as far as
+/// ambient occlusion lets it through
 /// @param drawn what draw_gbuffer has filled; otherwise rays find the surfaces
 /// @return motion vectors of the visible surface: the first that covers more than half of what is
 /// behind it
 gpu::ImageRef blend_surfaces(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                             const Composed& composed, const BlendedImages* drawn = nullptr);
+                             const Composed& composed, const std::optional<RadianceCache>& cache,
+                             const BlendedImages* drawn = nullptr);
 
 }  // namespace heliograph::render
