@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "shaders/shared/frame_constants.h"
 
 namespace heliograph::render {
@@ -24,6 +26,11 @@ struct SceneMotion {
   bool any() const { return light_changes() || geometry_moved; }
   /// Whether histories hold no more traces of what moved or changed.
   bool settled() const { return still_frames >= settling_frames; }
+  /// How many of the last `age` frames had the light of this frame; all of them where it changes in
+  /// this frame, too: then no frame has.
+  std::uint32_t frames_of_light(std::uint32_t age) const {
+    return still_light_frames > 0 ? std::min(age, still_light_frames) : age;
+  }
 
   static constexpr std::uint32_t settling_frames = 32;
 };

@@ -198,12 +198,14 @@ RadianceChannel specular_channel(const FrameInputs& in, const SampleHistories& h
 RadianceChannel indirect_channel(gpu::FramePlan& plan, const FrameInputs& in,
                                  const SampleHistories& histories) {
   const auto& buffers = indirect_temporal_buffers;
-  // The first frames know few bounces: the later half of all is enough. Light that has changed, or
-  // that objects let in or shut out, lags by half of `moving_seconds` behind the cache.
+  // The first frames know few bounces: the later half of all is enough, and so it is after a change
+  // of lights. Light that goes on to change, or that objects let in or shut out, lags by half of
+  // `moving_seconds` behind the cache.
   const auto most_frames = [&clock = in.clock, &motion = in.scene_motion] {
     constexpr std::uint32_t least_frames = 4;
     constexpr float moving_seconds = 0.25f;
-    const auto known = static_cast<float>(std::max(clock.age / 2, least_frames));
+    const auto known =
+        static_cast<float>(std::max(motion.frames_of_light(clock.age) / 2, least_frames));
     if (motion.settled() || clock.seconds <= 0.0f) return known;
     return std::min(known, std::max(moving_seconds / clock.seconds, float(least_frames)));
   };
