@@ -1,14 +1,15 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
-// One cosine-distributed ray per pixel that gathers what comes from the environment and from other
-// surfaces.
+// One ray per pixel that gathers what comes from the environment and from other surfaces: in
+// proportion to the cosine and to what the path guide has learnt.
 #include "lib/frame.glsl"
 #include "lib/math/octahedral.glsl"
 #include "lib/math/random.glsl"
 #include "lib/rays/ray_stream.glsl"
 #include "lib/rays/sampling_plan.glsl"
 #include "lib/math/geometry.glsl"
+#include "shared/path_guide.h"
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D normals;
 layout(set = 1, binding = 1, rgba32f) readonly uniform image2D motion;
@@ -16,7 +17,14 @@ layout(set = 1, binding = 2, std430) buffer Count { RayCount ray_count; };
 layout(set = 1, binding = 3, std430) writeonly buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 4, r32ui) readonly uniform uimage2D planned;  // or anything
 layout(set = 1, binding = 5, rgba32f) writeonly uniform image2D radiance;
-layout(push_constant) uniform Constants { uint by_plan; };
+layout(set = 1, binding = 6, std430) readonly buffer Guide { GuideEntry guide[]; };
+layout(push_constant) uniform Constants {
+  uint by_plan;
+  uint guided;
+  float cell_angle;  // of the radiance cache
+  float least_size;
+};
+#include "lib/lighting/path_guide.glsl"
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -30,15 +38,20 @@ void main() {
     vec3 shading = octahedral_decode(encoded.xy);
     vec3 geometric = octahedral_decode(encoded.zw);
     vec2 u = random_pair(uvec2(pixel), frame.sample_index, 3u, frame.seed);
-    ray.origin = offset_origin(world_position(pixel, view_z), geometric, view_z);
+    vec3 position = world_position(pixel, view_z);
+    GuidedPair pair = GuidedPair(u, 0u, 1.0);
+    if (guided != 0u) pair = guided_pair_at(position, geometric, u, cell_angle, least_size);
+    ray.origin = offset_origin(position, geometric, view_z);
     ray.t_min = 0.0;
-    ray.direction = sample_cosine(shading, u);
+    ray.direction = sample_cosine_by_axis(shading, pair.u);
     ray.t_max = 1e30;
     ray.pixel = uint(pixel.x) | uint(pixel.y) << 16u;
     // Directions below the surface, which a shading normal allows, are turned up: none is lost.
     ray.direction -= 2.0 * min(dot(ray.direction, geometric), 0.0) * geometric;
-    ray.user = ray.padding0 = 0u;
-    ray.padding1 = floatBitsToUint(max(dot(ray.direction, shading), 0.0) / pi);  // its density
+    ray.user = 0u;
+    ray.padding0 = floatBitsToUint(pair.weight);
+    // The density without a guide.
+    ray.padding1 = floatBitsToUint(max(dot(ray.direction, shading), 0.0) / pi);
     requested = true;
   }
   if (!outside_frame(pixel)) {

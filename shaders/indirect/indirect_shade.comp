@@ -24,5 +24,7 @@ void main() {
   bool known;
   vec3 light = gathered_light(ray, hits[index], constants, known);
   ivec2 pixel = ivec2(ray.pixel & 0xffffu, ray.pixel >> 16u);
-  imageStore(radiance, pixel, known ? vec4(sanitize(light), 1.0) : vec4(0.0, 0.0, 0.0, -1.0));
+  imageStore(radiance, pixel,
+             known ? vec4(sanitize(light) * uintBitsToFloat(ray.padding0), 1.0)
+                   : vec4(0.0, 0.0, 0.0, -1.0));
 }

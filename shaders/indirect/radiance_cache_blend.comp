@@ -1,13 +1,37 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-// Blends this frame's samples into the means of their cells, and splits cells.
+// Blends this frame's samples into the means of their cells and into the path guide, and splits
+// cells.
+#include "shared/path_guide.h"
 #include "shared/radiance_cache.h"
 
 layout(set = 1, binding = 0, std430) buffer Keys { uint cache_keys[]; };
 layout(set = 1, binding = 1, std430) buffer Cells { RadianceCell cells[]; };
 layout(set = 1, binding = 2, std430) writeonly buffer Report { uint cells_alive; };
+layout(set = 1, binding = 3, std430) buffer Guide { GuideEntry guide[]; };
 layout(push_constant) uniform Constants { RadianceCacheConstants constants; };
+#include "lib/lighting/path_guide.glsl"
+
+/// The entry at a place, made where there is a free slot.
+uint guide_slot(vec3 position, vec3 normal) {
+  GuideKey key = guide_key(position, normal, constants.cell_angle, constants.least_size);
+  for (uint i = 0u; i < guide_bucket; ++i) {
+    uint before = atomicCompSwap(guide[key.first + i].check, 0u, key.check);
+    if (before == 0u) guide[key.first + i].limits = even_limits();
+    if (before == 0u || before == key.check) return key.first + i;
+  }
+  return no_guide;
+}
+
+/// Samples that others take at the same time may be lost.
+void learn(RadianceCell cell) {
+  uint slot = guide_slot(cell.position, cell.normal);
+  if (slot == no_guide) return;
+  guide[slot].last_used = constants.frame_number;
+  guide[slot].counts[cell.bin] += 1.0;
+  guide[slot].squares[cell.bin] += cell.gathered * cell.gathered;
+}
 
 void main() {
   uint slot = gl_GlobalInvocationID.x;
@@ -33,4 +57,5 @@ void main() {
     cells[slot].indirect = mix(cells[slot].indirect, cells[slot].new_indirect, weight);
   }
   cells[slot].samples = samples;
+  if (constants.guided != 0u && cells[slot].gathered >= 0.0) learn(cells[slot]);
 }

@@ -9,6 +9,7 @@ layout(local_size_x = 64) in;
 #include "lib/math/sampling.glsl"
 #include "lib/rays/ray_stream.glsl"
 #include "shared/emissive.h"
+#include "shared/path_guide.h"
 #include "shared/radiance_cache.h"
 
 layout(set = 1, binding = 0, std430) buffer Keys { uint cache_keys[]; };
@@ -19,8 +20,10 @@ layout(set = 1, binding = 4, std430) buffer ShadowCount { RayCount shadow_count;
 layout(set = 1, binding = 5, std430) writeonly buffer ShadowRays { Ray shadow_rays[]; };
 // Of this frame, in scenes with emissive triangles.
 layout(set = 1, binding = 6, std430) readonly buffer Points { EmissivePoint points[]; };
+layout(set = 1, binding = 7, std430) readonly buffer Guide { GuideEntry guide[]; };
 layout(push_constant) uniform Constants { RadianceCacheConstants constants; };
 #include "lib/lighting/emissive_choice.glsl"
+#include "lib/lighting/path_guide.glsl"
 #include "lib/lighting/radiance_cache.glsl"
 
 /// A white surface without specular lobes.
@@ -95,6 +98,27 @@ bool probe_of(RadianceCell cell, uint slot, out Ray ray) {
   return far > 0.0;
 }
 
+/// It carries what its light is multiplied by, and the density that it has without a guide.
+Ray gathering_ray(RadianceCell cell, uint slot, uint check) {
+  vec2 u = cell_pair(check, 1u);
+  GuidedPair guided = GuidedPair(u, bin_of(u), 1.0);
+  if (constants.guided != 0u) {
+    guided = guided_pair_at(cell.position, cell.normal, u, constants.cell_angle,
+                            constants.least_size);
+  }
+  cells[slot].bin = guided.bin;
+  Ray ray;
+  ray.origin = offset_origin(cell.position, cell.normal, 0.0);
+  ray.t_min = 0.0;
+  ray.direction = sample_cosine_by_axis(cell.normal, guided.u);
+  ray.t_max = 1e30;
+  ray.pixel = slot;
+  ray.user = 0u;
+  ray.padding0 = floatBitsToUint(guided.weight);
+  ray.padding1 = floatBitsToUint(dot(ray.direction, cell.normal) / pi);
+  return ray;
+}
+
 /// The shadow ray of a cell, which carries what arrives. @return whether there is one
 bool light_of_cell(RadianceCell cell, uint slot, uint check, out Ray shadow) {
   SurfaceMaterial m = white_surface(cell.normal);
@@ -153,13 +177,7 @@ void main() {
       probes = probe_of(cell, slot, probe);
       cells[slot].state = cell_updated;
       cells[slot].new_direct = cells[slot].new_indirect = vec3(0.0);
-      ray.origin = offset_origin(cell.position, cell.normal, 0.0);
-      ray.t_min = 0.0;
-      ray.direction = sample_cosine(cell.normal, cell_pair(check, 1u));
-      ray.t_max = 1e30;
-      ray.pixel = slot;
-      ray.user = ray.padding0 = 0u;
-      ray.padding1 = floatBitsToUint(dot(ray.direction, cell.normal) / pi);  // its density
+      ray = gathering_ray(cell, slot, check);
       lit = light_of_cell(cell, slot, check, shadow);
     }
   }

@@ -35,5 +35,7 @@ void main() {
   }
   bool known;
   vec3 light = sanitize(gathered_light(ray, hits[index], constants, known));
-  cells[ray.pixel].new_indirect = known ? light : vec3(nothing_gathered);
+  cells[ray.pixel].gathered = known ? luminance(light) : nothing_gathered;
+  cells[ray.pixel].new_indirect =
+      known ? light * uintBitsToFloat(ray.padding0) : vec3(nothing_gathered);
 }

@@ -66,6 +66,10 @@ struct RadianceCell {
   uint splits;  // of cells that this is a part of
   vec3 anchor;  // the place that probes have reached, raised; of blocked cells one on the plane
   uint moved;   // 1: since then
+  uint bin;        // of the path guide, of this frame's gathering ray
+  float gathered;  // luminance of what it brings
+  uint padding0;
+  uint padding1;
 };
 
 struct RadianceCacheConstants {
@@ -78,6 +82,7 @@ struct RadianceCacheConstants {
   uint most_samples;    // in a mean
   float updates;        // cells in each frame, about
   float least_weight;   // of a new sample
+  uint guided;          // 1: gathering rays follow the path guide
 };
 
 SHARED_END

@@ -9,7 +9,7 @@
 const float gathering_spread = 0.25;
 
 /// What the surface sends out by itself, less what shadow rays toward emissive triangles bring. The
-/// ray carries its density.
+/// ray carries the density of the cosine: guided or not, these weights share out each direction.
 vec3 gathered_emission(Ray ray, Hit hit, HitSurface s) {
   if (!scene_has(scene_emissive) || is_unlit(s)) return own_light(s);
   if (!enabled(frame_emissive) || !side_shines(s, ray.direction)) return vec3(0.0);

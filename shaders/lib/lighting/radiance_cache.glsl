@@ -3,6 +3,7 @@
 #ifndef HELIOGRAPH_RADIANCE_CACHE_GLSL
 #define HELIOGRAPH_RADIANCE_CACHE_GLSL
 #include "lib/frame.glsl"
+#include "lib/lighting/cell_level.glsl"
 #include "lib/lighting/environment.glsl"
 #include "lib/lighting/lights.glsl"
 #include "lib/math/random.glsl"
@@ -15,23 +16,10 @@ struct CellKey {
   uint check;
 };
 
-/// Binary logarithm of the edge length of cells at `position`, as far as the eye is concerned.
-int cell_level(vec3 position, RadianceCacheConstants c) {
-  float size = distance(position, frame.eye.xyz) * c.cell_angle;
-  return int(ceil(log2(max(size, c.least_size))));
-}
-
-/// The same for a ray of length `t`, metres: a short one sees little of a large cell.
+/// Binary logarithm of the edge length of cells that a ray of length `t`, metres, asks for: a short
+/// one sees little of a large cell.
 int cell_level_of_ray(float t, RadianceCacheConstants c) {
   return int(ceil(log2(max(t * c.cell_fraction, c.least_size))));
-}
-
-/// 0 to 5: the axis that a normal follows most.
-uint normal_axis(vec3 n) {
-  vec3 a = abs(n);
-  if (a.x >= a.y && a.x >= a.z) return n.x >= 0.0 ? 0u : 1u;
-  if (a.y >= a.z) return n.y >= 0.0 ? 2u : 3u;
-  return n.z >= 0.0 ? 4u : 5u;
 }
 
 /// Where a ray has met a surface.
@@ -120,7 +108,7 @@ struct CachedLight {
 
 /// `t`: length of the ray that asks, metres.
 CachedLight cached_light(SeenPlace at, float t, RadianceCacheConstants c) {
-  int coarse = cell_level(at.position, c);
+  int coarse = cell_level(at.position, c.cell_angle, c.least_size);
   int level = clamp(cell_level_of_ray(t, c), coarse - finer_levels, coarse);
   for (uint i = 0u; i < 2u; ++i) {
     uint slot = touch_cell(at, level, c.frame_number);

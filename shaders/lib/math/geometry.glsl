@@ -12,6 +12,15 @@ void orthonormal_basis(vec3 n, out vec3 tangent, out vec3 bitangent) {
   bitangent = vec3(b, s + n.y * n.y * a, -n.y);
 }
 
+/// The same, but so that normals which follow the same axis most have much the same frame.
+void axis_basis(vec3 n, out vec3 tangent, out vec3 bitangent) {
+  vec3 a = abs(n);
+  bool follows_x = a.x >= a.y && a.x >= a.z;
+  vec3 along = follows_x ? vec3(0, 1, 0) : a.y >= a.z ? vec3(0, 0, 1) : vec3(1, 0, 0);
+  tangent = normalize(along - n * dot(along, n));
+  bitangent = cross(n, tangent);
+}
+
 /// A ray origin off the surface at `position`, on the side `normal` points to, by what rounding
 /// may have moved the position: seen from `distance` away it was rebuilt from a depth (measured:
 /// below 2^-15 of the distance, with triangles a kilometre long), placed far from the origin of
@@ -26,6 +35,16 @@ vec3 offset_origin(vec3 position, vec3 normal, float distance) {
 vec3 sample_cosine(vec3 normal, vec2 u) {
   vec3 tangent, bitangent;
   orthonormal_basis(normal, tangent, bitangent);
+  float radius = sqrt(u.x);
+  float angle = 2.0 * pi * u.y;
+  return normalize(tangent * (radius * cos(angle)) + bitangent * (radius * sin(angle)) +
+                   normal * sqrt(max(0.0, 1.0 - u.x)));
+}
+
+/// The same in the frame of axis_basis().
+vec3 sample_cosine_by_axis(vec3 normal, vec2 u) {
+  vec3 tangent, bitangent;
+  axis_basis(normal, tangent, bitangent);
   float radius = sqrt(u.x);
   float angle = 2.0 * pi * u.y;
   return normalize(tangent * (radius * cos(angle)) + bitangent * (radius * sin(angle)) +

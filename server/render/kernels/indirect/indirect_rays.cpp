@@ -1,3 +1,4 @@
+#include "render/kernels/indirect/path_guide.hpp"
 #include "render/kernels/indirect/radiance_cache.hpp"
 #include "render/kernels/simd/rows.hpp"
 #include "shaders/shared/sampling.h"
@@ -7,8 +8,9 @@
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/simd/emissive_choice.hpp"
+#include "render/kernels/simd/gathering_rays.hpp"
 #include "render/kernels/simd/random.hpp"
-#include "render/kernels/simd/rays.hpp"
+#include "render/kernels/simd/stored_triples.hpp"
 #include "render/kernels/simd/tiles.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -57,16 +59,35 @@ class IndirectRays {
     directions_.at(as_unsigned(pixels.x), as_unsigned(pixels.y), u, v);
     RayLanes ray;
     const Float3 shading = octahedral_decode(encoded.x, encoded.y);
-    ray.direction = sample_cosine(shading, u, v);
-    ray.origin = offset_origin(camera_.world_position(pixels, view_z), geometric, view_z);
+    const Float3 position = camera_.world_position(pixels, view_z);
+    Float weight = one();
+    if (job_.constants.guided != 0) guide(position, geometric, u, v, weight);
+    ray.direction = sample_cosine_by_axis(shading, u, v);
+    ray.origin = offset_origin(position, geometric, view_z);
     ray.t_min = zero();
     ray.t_max = number(1e30f);
     ray.pixel = pack_pixel(pixels);
     const Float below = hn::Min(dot(ray.direction, geometric), zero());
     ray.direction = multiply_add(geometric, below * number(-2.0f), ray.direction);
     const Float density = cosine_density(at_least(dot(ray.direction, shading), 0.0f));
-    ray.user = {zero(), zero(), density};
+    ray.user = {zero(), weight, density};
     return ray;
+  }
+
+  HWY_INLINE void guide(const Float3& position, const Float3& normal, Float& u, Float& v,
+                        Float& weight) const {
+    const IndirectRaysConstants& c = job_.constants;
+    const CellScale scale{job_.frame.eye, c.cell_angle, c.least_size};
+    const StoredTriples positions(position), normals(normal);
+    StoredTriples drawn(Float3{u, v, weight});
+    for (std::size_t lane = 0; lane < hn::Lanes(tag); ++lane) {
+      const glm::vec2 pair(drawn.at(lane));
+      const GuidedPair made =
+          guided_pair(job_.guide.data, scale, positions.at(lane), normals.at(lane), pair);
+      drawn.put(lane, {made.u, made.weight});
+    }
+    const Float3 guided = drawn.load();
+    u = guided.x, v = guided.y, weight = guided.z;
   }
 
   const IndirectRaysJob& job_;

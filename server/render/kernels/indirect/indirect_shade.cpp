@@ -13,7 +13,8 @@ namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 HWY_INLINE void store_light(const IndirectShadeJob& job, const RayLanes& ray,
                             const GatheredLanes& gathered, Mask requested) {
-  const auto& [light, known, met, position, normal] = gathered;
+  const Mask known = gathered.known;
+  const Float3 light = gathered.light * ray.user.y;
   const Texels<4> texels(
       Float4{hn::IfThenElseZero(known, light.x), hn::IfThenElseZero(known, light.y),
              hn::IfThenElseZero(known, light.z), select(known, one(), number(-1.0f))});
@@ -30,10 +31,13 @@ HWY_INLINE void store_light(const RadianceCacheShadeJob& job, const RayLanes& ra
     return job.cells[slots.of[lane]];
   };
   const Mask probes = hn::And(hn::Gt(ray.user.x, zero()), requested);
-  const StoredTriples values(gathered.light);
+  const StoredTriples values(gathered.light * ray.user.y);
+  HWY_ALIGN std::array<float, hn::MaxLanes(Tag())> luminances;
+  hn::Store(luminance(gathered.light), tag, luminances.data());
   const std::uint64_t known = mask_bits(gathered.known);
   for_each_lane(hn::AndNot(probes, requested), [&](std::size_t lane) {
     shared::RadianceCell& cell = cell_of(lane);
+    cell.gathered = luminances[lane];
     cell.new_indirect = known >> lane & 1 ? values.at(lane) : glm::vec3(shared::nothing_gathered);
   });
   if (none(probes)) return;

@@ -8,6 +8,8 @@
 #include <tuple>
 
 #include "hwy/cache_control.h"
+#include "render/kernels/indirect/cell_level.hpp"
+#include "render/kernels/indirect/path_guide.hpp"
 
 namespace heliograph::render::kernels {
 namespace {
@@ -17,34 +19,6 @@ using glm::vec3;
 
 constexpr std::uint32_t no_cell = ~0u;
 constexpr int slots_of_thread = 4096;
-
-/// shaders/lib/math/random.glsl
-uvec3 pcg3d(uvec3 v) {
-  v = v * 1664525u + 1013904223u;
-  v.x += v.y * v.z;
-  v.y += v.z * v.x;
-  v.z += v.x * v.y;
-  v ^= v >> 16u;
-  v.x += v.y * v.z;
-  v.y += v.z * v.x;
-  v.z += v.x * v.y;
-  return v;
-}
-
-/// The least integer whose power of two is `size` or more.
-int level_of(float size) {
-  int exponent = 0;
-  // A fraction of at least a half, times a power of two.
-  const float fraction = std::frexp(size, &exponent);
-  return fraction == 0.5f ? exponent - 1 : exponent;
-}
-
-std::uint32_t normal_axis(const vec3& n) {
-  const vec3 a = glm::abs(n);
-  if (a.x >= a.y && a.x >= a.z) return n.x >= 0.0f ? 0 : 1;
-  if (a.y >= a.z) return n.y >= 0.0f ? 2 : 3;
-  return n.z >= 0.0f ? 4 : 5;
-}
 
 CellKey cell_key(const SeenPlace& at, int level) {
   const vec3 cell = glm::floor(at.position * std::ldexp(1.0f, -level));
@@ -85,8 +59,7 @@ std::uint32_t priority_of(const vec3& position, std::uint32_t frame_number) {
 CacheReader::Lookup CacheReader::begin(const CacheQuery& ray) const {
   const shared::RadianceCacheConstants& c = constants_;
   Lookup made;
-  const float seen_from_eye = glm::distance(ray.at.position, eye_) * c.cell_angle;
-  made.coarse = level_of(std::max(seen_from_eye, c.least_size));
+  made.coarse = CellScale{eye_, c.cell_angle, c.least_size}.level_at(ray.at.position);
   const int level = std::clamp(level_of(std::max(ray.t * c.cell_fraction, c.least_size)),
                                made.coarse - shared::finer_levels, made.coarse);
   look_at(ray, level, made);
@@ -219,11 +192,34 @@ void split(shared::RadianceCell& cell) {
   cell.state = shared::cell_split;
 }
 
+/// Cells whose gathering rays have brought something. The guide learns from them in the order of
+/// their slots, which does not depend on threads.
+class LearntCells {
+ public:
+  /// Thread safe.
+  void add(const std::vector<int>& slots) {
+    const std::lock_guard lock(mutex_);
+    slots_.insert(slots_.end(), slots.begin(), slots.end());
+  }
+  void teach(const RadianceCacheBlendJob& job) {
+    std::ranges::sort(slots_);
+    const shared::RadianceCacheConstants& c = job.constants;
+    const CellScale scale{job.frame.eye, c.cell_angle, c.least_size};
+    for (const int slot : slots_) learn(job.guide.data, scale, job.cells[slot], c.frame_number);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<int> slots_;
+};
+
 }  // namespace
 
 void radiance_cache_blend(const RadianceCacheBlendJob& job) {
   const shared::RadianceCacheConstants& constants = job.constants;
+  LearntCells learnt;
   for_each_range(shared::cache_cells, slots_of_thread, [&](int first, int last) {
+    std::vector<int> gathered;
     for (int i = first; i < last; ++i) {
       shared::RadianceCell& cell = job.cells[i];
       if (job.keys[i] == 0) continue;
@@ -235,8 +231,11 @@ void radiance_cache_blend(const RadianceCacheBlendJob& job) {
       cell.direct = glm::mix(cell.direct, cell.new_direct, weight);
       if (cell.new_indirect.x < 0.0f) continue;
       cell.indirect = glm::mix(cell.indirect, cell.new_indirect, weight);
+      gathered.push_back(i);
     }
+    if (constants.guided != 0) learnt.add(gathered);
   });
+  learnt.teach(job);
   *job.report.data =
       job.keys[shared::cache_counts + constants.frame_number % shared::cache_counters];
   const std::uint32_t next = (constants.frame_number + 1) % shared::cache_counters;

@@ -10,6 +10,7 @@
 #include "render/resources/host_tables.hpp"
 #include "render/resources/lights/light_grid.hpp"
 #include "shaders/shared/emissive.h"
+#include "shaders/shared/path_guide.h"
 #include "shaders/shared/radiance_cache.h"
 
 /// The radiance cache on all processors: shaders/lib/lighting/radiance_cache.glsl and the passes
@@ -105,6 +106,7 @@ struct RadianceCacheRaysBindings {
   RaySink<Stage> rays;
   RaySink<Stage> shadows;  // toward lights
   gpu::ReadBuffer<Stage, shared::EmissivePoint> points;
+  gpu::ReadBuffer<Stage, shared::GuideEntry> guide;
 };
 struct RadianceCacheRaysJob : FrameJob<RadianceCacheRaysBindings, shared::RadianceCacheConstants> {
   SceneLights lights;
@@ -152,9 +154,9 @@ struct RadianceCacheBlendBindings {
   gpu::ReadWriteBuffer<Stage, std::uint32_t> keys;
   gpu::ReadWriteBuffer<Stage, shared::RadianceCell> cells;
   gpu::WriteBuffer<Stage, std::uint32_t> report;  // how many cells there are
+  gpu::ReadWriteBuffer<Stage, shared::GuideEntry> guide;
 };
-using RadianceCacheBlendJob =
-    gpu::HostPass<RadianceCacheBlendBindings, shared::RadianceCacheConstants>;
+using RadianceCacheBlendJob = FrameJob<RadianceCacheBlendBindings, shared::RadianceCacheConstants>;
 void radiance_cache_blend(const RadianceCacheBlendJob& job);
 
 /// shaders/indirect/indirect_rays.comp
@@ -165,9 +167,13 @@ struct IndirectRaysBindings {
   RaySink<Stage> rays;
   gpu::Read<Stage> planned;    // r32ui, shaders/shared/sampling.h, or anything
   gpu::Write<Stage> radiance;  // rgba32f; cleared; w < 0 where the plan leaves it out
+  gpu::ReadBuffer<Stage, shared::GuideEntry> guide;
 };
 struct IndirectRaysConstants {
   std::uint32_t by_plan;  // 0: every pixel is sampled
+  std::uint32_t guided;   // 1: by the path guide
+  float cell_angle;       // of the radiance cache
+  float least_size;
 };
 struct IndirectRaysJob : FrameJob<IndirectRaysBindings, IndirectRaysConstants> {
   Rows rows;  // whose rays are made

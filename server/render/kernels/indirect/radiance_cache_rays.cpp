@@ -1,3 +1,4 @@
+#include "render/kernels/indirect/path_guide.hpp"
 #include "render/kernels/indirect/radiance_cache.hpp"
 #include "render/kernels/simd/rows.hpp"
 
@@ -6,10 +7,10 @@
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/simd/emissive_choice.hpp"
+#include "render/kernels/simd/gathering_rays.hpp"
 #include "render/kernels/simd/light_grid.hpp"
 #include "render/kernels/simd/radiance_cache.hpp"
 #include "render/kernels/simd/random.hpp"
-#include "render/kernels/simd/rays.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
@@ -113,21 +114,30 @@ class CellUpdates {
                                .padding1 = 0};
   }
 
+  GuidedPair guided(const shared::RadianceCell& cell, const glm::vec2& u) const {
+    const shared::RadianceCacheConstants& c = job_.constants;
+    if (c.guided == 0) return unguided_pair(u);
+    return guided_pair(job_.guide.data, {job_.frame.eye, c.cell_angle, c.least_size}, cell.position,
+                       cell.normal, u);
+  }
+
   HWY_INLINE void add_rays(std::size_t at, RayBatch& rays, RayBatch& shadows) const {
     const std::size_t count = std::min(count_ - at, hn::Lanes(tag));
     StoredTriples positions, normals;
-    HWY_ALIGN std::array<float, hn::MaxLanes(Tag())> pick{}, entry_picks{}, u{}, v{}, across{},
-        down{};
+    HWY_ALIGN std::array<float, hn::MaxLanes(Tag())> pick{}, entry_picks{}, u{}, v{}, weights{},
+        across{}, down{};
     HWY_ALIGN std::array<int, hn::MaxLanes(Tag())> slots{};
     for (std::size_t lane = 0; lane < hn::Lanes(tag); ++lane) {
       const int slot = due_[at + std::min(lane, count - 1)];
-      const shared::RadianceCell& cell = job_.cells[slot];
+      shared::RadianceCell& cell = job_.cells[slot];
       const std::uint32_t check = job_.keys[slot];
       slots[lane] = slot;
       positions.put(lane, cell.position);
       normals.put(lane, cell.normal);
-      const glm::vec2 direction = numbers_.at(check, 1), point = numbers_.at(check, 3);
-      u[lane] = direction.x, v[lane] = direction.y;
+      const GuidedPair direction = guided(cell, numbers_.at(check, 1));
+      cell.bin = direction.bin;
+      u[lane] = direction.u.x, v[lane] = direction.u.y, weights[lane] = direction.weight;
+      const glm::vec2 point = numbers_.at(check, 3);
       const glm::vec2 picks = numbers_.at(check, 2);
       pick[lane] = picks.x, entry_picks[lane] = picks.y;
       across[lane] = point.x, down[lane] = point.y;
@@ -137,11 +147,11 @@ class CellUpdates {
     const Float3 position = positions.load(), normal = normals.load();
     RayLanes ray;
     ray.origin = offset_origin(position, normal, zero());
-    ray.direction = sample_cosine(normal, load(u), load(v));
+    ray.direction = sample_cosine_by_axis(normal, load(u), load(v));
     ray.t_min = zero();
     ray.t_max = number(1e30f);
     ray.pixel = hn::Load(integer_tag, slots.data());
-    ray.user = {zero(), zero(), cosine_density(dot(ray.direction, normal))};
+    ray.user = {zero(), load(weights), cosine_density(dot(ray.direction, normal))};
     rays.add(ray, requested);
     const Receivers receivers{
         position, normal, load(pick), load(entry_picks), {load(across), load(down)}, requested};

@@ -14,6 +14,7 @@
 #include "render/kernels/simd/environment.hpp"
 #include "render/kernels/simd/material/hit_material.hpp"
 #include "render/kernels/simd/material/specular_lobe.hpp"
+#include "render/kernels/simd/stored_triples.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
@@ -23,22 +24,6 @@ struct CachedLanes {
   Float3 direct, indirect;
   Float size;  // edge length of the cell, metres
   Mask known;
-};
-
-/// Three numbers of every lane in memory.
-struct StoredTriples {
-  HWY_ALIGN std::array<float, hn::MaxLanes(Tag())> x, y, z;
-  StoredTriples() = default;
-  HWY_INLINE explicit StoredTriples(const Float3& v) {
-    hn::Store(v.x, tag, x.data());
-    hn::Store(v.y, tag, y.data());
-    hn::Store(v.z, tag, z.data());
-  }
-  glm::vec3 at(std::size_t lane) const { return {x[lane], y[lane], z[lane]}; }
-  void put(std::size_t lane, const glm::vec3& v) { x[lane] = v.x, y[lane] = v.y, z[lane] = v.z; }
-  HWY_INLINE Float3 load() const {
-    return {hn::Load(tag, x.data()), hn::Load(tag, y.data()), hn::Load(tag, z.data())};
-  }
 };
 
 /// Where rays of length `t` have met `s`. `order`: of the rays, one for each.

@@ -2,6 +2,7 @@
 
 #include <cstring>
 
+#include "render/kernels/indirect/path_guide.hpp"
 #include "render/kernels/indirect/radiance_cache.hpp"
 #include "render/passes/formats.hpp"
 #include "render/passes/lights/emissive_points.hpp"
@@ -40,7 +41,8 @@ shared::RadianceCacheConstants cache_constants(const FrameInputs& in) {
     made.most_samples = std::min(made.most_samples, shared::cache_new_samples);
   }
   made.updates = factor * static_cast<float>(settings.updates);
-  made.least_weight = in.clock.age < bounces ? 1.0f : young ? 0.5f : 0.0f;
+  made.guided = settings.path_guiding;
+  made.least_weight = motion.frames_of_light(in.clock.age) < bounces ? 1.0f : young ? 0.5f : 0.0f;
   return made;
 }
 
@@ -64,7 +66,8 @@ UpdateRays generate(gpu::FramePlan& plan, const FrameInputs& in, const RadianceC
                                                  .cells = cache.cells,
                                                  .rays = ray_sink(made.rays),
                                                  .shadows = ray_sink(made.shadows),
-                                                 .points = cache.points})
+                                                 .points = cache.points,
+                                                 .guide = cache.guide})
       .constants([in] { return cache_constants(in); })
       .dispatch({shared::cache_cells, 1})
       .host([in](const kernels::RadianceCacheRaysJob::Pass& pass) {
@@ -112,7 +115,8 @@ CacheUse radiance_cache_use(const gpu::FramePlan& plan, const RadianceCache& cac
   CacheUse use;
   std::memcpy(&use.cells, plan.get(cache.report).mapped(), sizeof use.cells);
   use.most_cells = shared::cache_cells;
-  use.bytes = plan.get(cache.keys).size() + plan.get(cache.cells).size();
+  use.bytes =
+      plan.get(cache.keys).size() + plan.get(cache.cells).size() + plan.get(cache.guide).size();
   return use;
 }
 
@@ -123,7 +127,15 @@ RadianceCache update_radiance_cache(gpu::FramePlan& plan, const FrameInputs& in)
       plan.buffer("radiance_cache.cells", sizeof(shared::RadianceCell) * shared::cache_cells,
                   storage, gpu::Memory::device),
       draw_emissive_points(plan, in),
+      plan.buffer("radiance_cache.guide", sizeof(shared::GuideEntry) * shared::guide_entries,
+                  storage, gpu::Memory::device),
       plan.buffer("radiance_cache.report", sizeof(std::uint32_t), storage, gpu::Memory::readback)};
+  plan.pass("path_guide", in.program(shaders::path_guide))
+      .bind<kernels::PathGuideBindings>({.guide = cache.guide})
+      .constants([in] { return cache_constants(in); })
+      .dispatch({shared::guide_entries, 1})
+      .when([in] { return in.settings.indirect.path_guiding; })
+      .host(kernels::path_guide);
   const UpdateRays update = generate(plan, in, cache);
   const auto hits = plan.buffer("radiance_cache.hits", sizeof(shared::Hit) * update.rays.capacity,
                                 storage, gpu::Memory::device);
@@ -132,10 +144,12 @@ RadianceCache update_radiance_cache(gpu::FramePlan& plan, const FrameInputs& in)
   light(plan, in, cache, update.shadows);
   plan.pass("radiance_cache.blend", in.program(shaders::radiance_cache_blend))
       .bind<kernels::RadianceCacheBlendBindings>(
-          {.keys = cache.keys, .cells = cache.cells, .report = cache.report})
+          {.keys = cache.keys, .cells = cache.cells, .report = cache.report, .guide = cache.guide})
       .constants([in] { return cache_constants(in); })
       .dispatch({shared::cache_cells, 1})
-      .host(kernels::radiance_cache_blend);
+      .host([in](const kernels::RadianceCacheBlendJob::Pass& pass) {
+        kernels::radiance_cache_blend({pass, in.constants});
+      });
   return cache;
 }
 

@@ -12,6 +12,7 @@ struct RadianceCache {
   gpu::BufferRef keys;    // uint
   gpu::BufferRef cells;   // shared::RadianceCell
   gpu::BufferRef points;  // draw_emissive_points(), of this frame
+  gpu::BufferRef guide;   // shared::GuideEntry
   gpu::BufferRef report;  // uint: how many cells there are, for the host
 };
 

@@ -26,9 +26,12 @@ void gather(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                                             .motion = gbuffer.motion,
                                             .rays = ray_sink(rays),
                                             .planned = planned.value_or(gbuffer.instance),
-                                            .radiance = radiance})
+                                            .radiance = radiance,
+                                            .guide = cache.guide})
       .constants([in, has_plan = planned.has_value()] {
-        return kernels::IndirectRaysConstants{has_plan && leaves_samples_out(in)};
+        const shared::RadianceCacheConstants cells = cache_constants(in);
+        return kernels::IndirectRaysConstants{has_plan && leaves_samples_out(in), cells.guided,
+                                              cells.cell_angle, cells.least_size};
       })
       .dispatch(gpu::each_pixel())
       .host([in, rows](const kernels::IndirectRaysJob::Pass& pass) {
