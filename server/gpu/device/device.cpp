@@ -70,6 +70,7 @@ Device::~Device() {
   vkDeviceWaitIdle(handle_);
   save_pipeline_cache();
   vkDestroyPipelineCache(handle_, pipeline_cache_, nullptr);
+  vkDestroySemaphore(handle_, timeline_, nullptr);
   vkDestroyDevice(handle_, nullptr);
 }
 
@@ -96,6 +97,7 @@ void Device::create(const Instance& instance) {
   VkPhysicalDeviceVulkan12Features v12{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES, &v13};
   v12.bufferDeviceAddress = VK_TRUE;
   v12.hostQueryReset = VK_TRUE;
+  v12.timelineSemaphore = VK_TRUE;
   VkPhysicalDeviceFeatures2 features{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2, &v12};
   features.features.independentBlend = VK_TRUE;
   features.features.imageCubeArray = VK_TRUE;
@@ -113,6 +115,10 @@ void Device::create(const Instance& instance) {
   check(vkCreateDevice(report_.handle, &info, nullptr, &handle_), "create the Vulkan device");
   volkLoadDevice(handle_);
   vkGetDeviceQueue(handle_, queue_family_, 0, &queue_);
+  VkSemaphoreTypeCreateInfo type{VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO};
+  type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
+  const VkSemaphoreCreateInfo timeline{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, &type};
+  check(vkCreateSemaphore(handle_, &timeline, nullptr, &timeline_), "create a semaphore");
 }
 
 void Device::load_pipeline_cache(const std::filesystem::path& folder) {
@@ -174,23 +180,30 @@ void Device::check_presence() const {
   check(loss_is_wanted() ? VK_ERROR_DEVICE_LOST : VK_SUCCESS, "reach the device");
 }
 
-void Device::submit(VkCommandBuffer commands) const {
+std::uint64_t Device::submit(VkCommandBuffer commands) const {
   VkCommandBufferSubmitInfo buffer{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
   buffer.commandBuffer = commands;
+  VkSemaphoreSubmitInfo done{VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO};
+  done.semaphore = timeline_;
+  done.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
   VkSubmitInfo2 info{VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
   info.commandBufferInfoCount = 1;
   info.pCommandBufferInfos = &buffer;
-  VkFenceCreateInfo fence_info{VK_STRUCTURE_TYPE_FENCE_CREATE_INFO};
-  VkFence fence = VK_NULL_HANDLE;
-  check(vkCreateFence(handle_, &fence_info, nullptr, &fence), "create a fence");
-  VkResult result;
-  {
-    const std::lock_guard lock(queue_mutex_);
-    result = loss_is_wanted() ? VK_ERROR_DEVICE_LOST : vkQueueSubmit2(queue_, 1, &info, fence);
-  }
-  if (result == VK_SUCCESS) result = vkWaitForFences(handle_, 1, &fence, VK_TRUE, UINT64_MAX);
-  vkDestroyFence(handle_, fence, nullptr);
-  check(result, "run commands on the device");
+  info.signalSemaphoreInfoCount = 1;
+  info.pSignalSemaphoreInfos = &done;
+  const std::lock_guard lock(queue_mutex_);
+  done.value = submitted_ + 1;
+  check(loss_is_wanted() ? VK_ERROR_DEVICE_LOST : vkQueueSubmit2(queue_, 1, &info, VK_NULL_HANDLE),
+        "give commands to the device");
+  return ++submitted_;
+}
+
+void Device::wait(std::uint64_t submitted) const {
+  VkSemaphoreWaitInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO};
+  info.semaphoreCount = 1;
+  info.pSemaphores = &timeline_;
+  info.pValues = &submitted;
+  check(vkWaitSemaphores(handle_, &info, UINT64_MAX), "run commands on the device");
 }
 
 void Device::submit_once(const std::function<void(VkCommandBuffer)>& record) const {
@@ -215,7 +228,7 @@ void Device::submit_once(const std::function<void(VkCommandBuffer)>& record) con
   check(vkBeginCommandBuffer(commands, &begin), "begin a command buffer");
   record(commands);
   check(vkEndCommandBuffer(commands), "end a command buffer");
-  submit(commands);
+  wait(submit(commands));
 }
 
 void Device::name(VkObjectType type, std::uint64_t object, const std::string& text) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <mutex>
@@ -47,8 +48,11 @@ class Device {
   /// For frames that may submit nothing: finds a device that tests have lost. Thread safe.
   /// @throws DeviceLost
   void check_presence() const;
-  /// Submits and waits until the device is done. Thread safe.
-  void submit(VkCommandBuffer commands) const;
+  /// Submits and returns at once. Thread safe. @returns what wait() waits for
+  std::uint64_t submit(VkCommandBuffer commands) const;
+  /// Until the device is done with what submit() returned this for, and with all before it. Thread
+  /// safe.
+  void wait(std::uint64_t submitted) const;
   /// Records into a fresh command buffer, submits it and waits: for set-up work. Thread safe.
   void submit_once(const std::function<void(VkCommandBuffer)>& record) const;
 
@@ -73,6 +77,8 @@ class Device {
   std::filesystem::path cache_file_;
   bool labels_ = false;
   mutable std::mutex queue_mutex_;
+  VkSemaphore timeline_ = VK_NULL_HANDLE;  // counts what the device has done
+  mutable std::uint64_t submitted_ = 0;    // guarded by queue_mutex_
   mutable ProgramRegistry programs_;
 };
 

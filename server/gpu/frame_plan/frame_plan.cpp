@@ -30,6 +30,11 @@ FramePlan::FramePlan(const Device& device, VkExtent2D extent)
 }
 
 FramePlan::~FramePlan() {
+  try {
+    wait();  // what a frame that has begun uses is freed now
+  } catch (const std::runtime_error&) {
+    // The device is lost: it uses nothing any more.
+  }
   vkDestroyQueryPool(device_.handle(), queries_, nullptr);
   vkDestroyCommandPool(device_.handle(), command_pool_, nullptr);
 }

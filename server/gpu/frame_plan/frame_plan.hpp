@@ -254,6 +254,13 @@ class FramePlan {
   /// false, the remaining passes do not run and histories do not swap. Images have no defined
   /// content then.
   bool execute(const std::function<bool()>& canceled = {});
+  /// The first part of execute(): runs the passes of the host and gives the device its work. Until
+  /// finish() nothing of the plan changes and nothing is read.
+  bool begin(const std::function<bool()>& canceled = {});
+  /// The second part: waits for the device.
+  void finish();
+  /// Whether the device may still work on a frame that has begun.
+  bool in_flight() const { return submitted_.has_value(); }
   /// Whether the frame that runs is canceled: what a pass writes is not read any more. Thread safe.
   bool is_canceled() const;
   /// The frame that just ran, as read_back() asked for it: level 0, rows tightly packed.
@@ -331,8 +338,11 @@ class FramePlan {
   bool timed_by_clock() const;
   /// The command buffer of what comes next, begun with its first command.
   VkCommandBuffer recorder();
-  /// Runs what was recorded since the last submit, if anything, and waits.
-  void flush();
+  /// Gives the device what was recorded since the last submit, if anything.
+  void submit();
+  /// For all that was submitted.
+  void wait();
+  void flush();  // both
   void read_timers();
   const Image& physical(std::uint32_t index, std::uint32_t parity) const;
   VkImageView physical_view(std::uint32_t index, std::uint32_t parity) const;
@@ -354,9 +364,11 @@ class FramePlan {
   ImageRef read_back_;
   Readback readback_;
   VkCommandPool command_pool_ = VK_NULL_HANDLE;
-  std::vector<VkCommandBuffer> commands_;  // one for each submit of a frame
-  std::size_t submits_ = 0;                // of this frame so far
-  bool recording_ = false;                 // into the next
+  std::vector<VkCommandBuffer> commands_;   // one for each submit of a frame
+  std::size_t submits_ = 0;                 // of this frame so far
+  bool recording_ = false;                  // into the next
+  std::optional<std::uint64_t> submitted_;  // what was last submitted and not waited for
+  bool begun_ = false;
   VkQueryPool queries_ = VK_NULL_HANDLE;
   std::vector<PassTiming> timings_;
   std::vector<View> views_;

@@ -26,7 +26,14 @@ bool FramePlan::timed_by_clock() const {
 }
 
 bool FramePlan::execute(const std::function<bool()>& canceled) {
+  if (!begin(canceled)) return false;
+  finish();
+  return true;
+}
+
+bool FramePlan::begin(const std::function<bool()>& canceled) {
   if (!compiled_) throw GpuError("a frame plan runs only after compile()");
+  if (begun_) throw GpuError("a frame begins before the one before it is finished");
   device_.check_presence();
   if (!timed_by_clock()) {
     vkResetQueryPool(device_.handle(), queries_, 0, static_cast<std::uint32_t>(passes_.size() * 2));
@@ -40,10 +47,16 @@ bool FramePlan::execute(const std::function<bool()>& canceled) {
   asks_canceled_ = nullptr;
   if (!finished) return false;
   if (readback_.copies()) readback_.record(recorder(), get(read_back_));
-  flush();
+  submit();
+  begun_ = true;
+  return true;
+}
+
+void FramePlan::finish() {
+  if (!std::exchange(begun_, false)) throw GpuError("a frame is finished that has not begun");
+  wait();
   if (!timed_by_clock()) read_timers();
   parity_ ^= 1;
-  return true;
 }
 
 bool FramePlan::is_canceled() const {
@@ -119,6 +132,15 @@ VkCommandBuffer FramePlan::recorder() {
 }
 
 void FramePlan::flush() {
+  submit();
+  wait();
+}
+
+void FramePlan::wait() {
+  if (const auto submitted = std::exchange(submitted_, std::nullopt)) device_.wait(*submitted);
+}
+
+void FramePlan::submit() {
   if (!std::exchange(recording_, false)) return;
   const VkCommandBuffer commands = commands_[submits_++];
   // Mapped memory is read after this submit, by a host pass or by the caller that takes the frame.
@@ -132,7 +154,7 @@ void FramePlan::flush() {
   dependency.pMemoryBarriers = &barrier;
   vkCmdPipelineBarrier2(commands, &dependency);
   check(vkEndCommandBuffer(commands), "end the frame's commands");
-  device_.submit(commands);
+  submitted_ = device_.submit(commands);
 }
 
 void FramePlan::record(const Pass& pass, VkCommandBuffer commands, std::uint32_t query) {

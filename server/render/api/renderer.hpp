@@ -73,6 +73,14 @@ class Renderer {
   /// any of their threads, returns true. The next frame then continues the histories of the one
   /// before; until then no buffer is valid.
   std::optional<Frame> render(const std::function<bool()>& canceled);
+  /// The first part of render(), up to where nothing is left but to wait for the device: another
+  /// renderer of the same engine may begin its frame meanwhile. @returns false where canceled;
+  /// otherwise finish() is the next call
+  bool begin(const std::function<bool()>& canceled);
+  /// Whether the device still works on a frame that has begun: finish() would wait.
+  bool in_flight() const;
+  /// The second part.
+  Frame finish();
 
   /// The work behind the last frame's pass times; slow, for measurements.
   std::vector<PassWork> work() const;

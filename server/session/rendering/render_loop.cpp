@@ -104,7 +104,7 @@ void RenderLoop::run() {
     if (loss_reported_.exchange(false) && device_ready_) on_device_lost("outside of rendering");
     const Views views = open_views();
     if (!device_ready_ && !recover_device(views)) continue;
-    if (advance_next(views) || !device_ready_) continue;
+    if (advance_next(views) || finish_frame() || !device_ready_) continue;
     auto due = next_due(views);
     if (held_back_until_) due = due ? std::min(*due, *held_back_until_) : *held_back_until_;
     wake_->wait_until(due);
@@ -123,6 +123,7 @@ void RenderLoop::remove_closed() {
     closed.swap(closed_);
   }
   for (const auto& view : closed) {
+    if (in_flight_ && in_flight_->view == view) in_flight_.reset();
     view->refuse_captures();
     fair_share_.remove(view.get());
   }
@@ -133,50 +134,75 @@ void RenderLoop::remove_closed() {
 bool RenderLoop::advance_next(const Views& views) {
   std::vector<FairShare::Key> ready;
   for (const auto& view : views) {
-    if (view->awake()) ready.push_back(view.get());
+    if (view->awake() && !view->in_flight()) ready.push_back(view.get());
   }
   fair_share_.sort(ready);
   held_back_until_.reset();
-  std::vector<SessionView*> drawing;
+  Views drawing;
   for (const FairShare::Key key : ready) {
     if (stopping_ || !device_ready_) return false;
-    SessionView& view = *std::find_if(views.begin(), views.end(), [&](const auto& candidate) {
-                           return candidate.get() == key;
-                         })->get();
-    const SessionView::Work work = advance(view, false);
+    const auto& view = *std::ranges::find(views, key, &std::shared_ptr<SessionView>::get);
+    const SessionView::Work work = advance(*view, false);
     if (work == SessionView::Work::small) return true;
-    if (work == SessionView::Work::held_back) drawing.push_back(&view);
+    if (work == SessionView::Work::held_back) drawing.push_back(view);
   }
-  return std::any_of(drawing.begin(), drawing.end(),
-                     [&](SessionView* view) { return draw_in_turn(*view); });
+  return std::ranges::any_of(drawing, [&](const auto& view) { return draw_in_turn(view); });
 }
 
 /// False if it has to wait for another session, or had nothing to draw after all.
-bool RenderLoop::draw_in_turn(SessionView& view) {
+bool RenderLoop::draw_in_turn(const std::shared_ptr<SessionView>& view) {
   if (stopping_ || !device_ready_) return false;
   const Clock::time_point start = Clock::now();
-  if (const auto until = fair_share_.hold_back(&view, start)) {
+  if (const auto until = fair_share_.hold_back(view.get(), start)) {
     held_back_until_ = held_back_until_ ? std::min(*held_back_until_, *until) : *until;
     return false;
   }
-  const SessionView::Work work = advance(view, true);
-  if (!has_rendered_ && view.has_rendered()) report_first_frame();
-  if (work == SessionView::Work::drawing) fair_share_.charge(&view, start, Clock::now());
+  const SessionView::Work work = advance(*view, true);
+  // The device goes on with this frame while that of another view is shown.
+  finish_frame();
+  if (view->in_flight() && device_ready_) {
+    in_flight_ = {view, start};
+  } else if (work == SessionView::Work::drawing) {
+    frame_finished(*view, start);
+  }
   return work != SessionView::Work::none;
 }
 
+/// Of the view that has one in flight; false: none has.
+bool RenderLoop::finish_frame() {
+  const auto finished = std::exchange(in_flight_, std::nullopt);
+  if (!finished) return false;
+  SessionView& view = *finished->view;
+  if (attempt(view, [&] { view.finish_frame(device_free_); })) {
+    frame_finished(view, std::max(finished->begun, device_free_));
+  }
+  return true;
+}
+
+void RenderLoop::frame_finished(SessionView& view, Clock::time_point begun) {
+  device_free_ = Clock::now();
+  fair_share_.charge(&view, begun, device_free_);
+  if (!has_rendered_ && view.has_rendered()) report_first_frame();
+}
+
 SessionView::Work RenderLoop::advance(SessionView& view, bool may_draw) {
+  auto work = SessionView::Work::none;
+  attempt(view, [&] { work = view.advance(may_draw); });
+  return work;
+}
+
+bool RenderLoop::attempt(SessionView& view, const std::function<void()>& work) {
   try {
-    return view.advance(may_draw);
+    work();
+    return true;
   } catch (const render::DeviceLost& failure) {
     on_device_lost("session " + view.session()->name() + ": " + failure.what());
-    return SessionView::Work::none;
   } catch (const std::exception& failure) {
     log_error({.session = view.session()->name()},
               std::string("rendering failed: ") + failure.what());
     view.recover();
-    return SessionView::Work::none;
   }
+  return false;
 }
 
 void RenderLoop::report_device_loss() {
@@ -191,6 +217,7 @@ void RenderLoop::on_new_device(std::function<void()> callback) {
 
 void RenderLoop::on_device_lost(const std::string& why) {
   device_ready_ = false;
+  in_flight_.reset();
   ++device_losses_;
   const Clock::duration pause = retry_backoff_.after_loss(Clock::now());
   retry_at_ = Clock::now() + pause;

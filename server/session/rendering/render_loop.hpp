@@ -53,8 +53,12 @@ class RenderLoop {
   Views open_views();
   void remove_closed();
   bool advance_next(const Views& views);
-  bool draw_in_turn(SessionView& view);
+  bool draw_in_turn(const std::shared_ptr<SessionView>& view);
   SessionView::Work advance(SessionView& view, bool may_draw);
+  bool finish_frame();
+  void frame_finished(SessionView& view, Clock::time_point begun);
+  /// Runs `work` of a view, whose failure is not that of others. @returns whether it succeeded
+  bool attempt(SessionView& view, const std::function<void()>& work);
   std::optional<Clock::time_point> next_due(const Views& views) const;
   void report_first_frame();
   void on_device_lost(const std::string& why);
@@ -75,9 +79,16 @@ class RenderLoop {
   std::atomic<bool> device_ready_ = true;
   std::atomic<bool> loss_reported_ = false;
   std::atomic<std::uint64_t> device_losses_ = 0;
-  RetryBackoff retry_backoff_;  // of the render thread, like the next two
+  RetryBackoff retry_backoff_;  // of the render thread, like the next ones
   Clock::time_point retry_at_;
   std::optional<Clock::time_point> held_back_until_;
+  /// The view whose frame the device works on: that of another one may begin meanwhile.
+  struct InFlight {
+    std::shared_ptr<SessionView> view;
+    Clock::time_point begun;
+  };
+  std::optional<InFlight> in_flight_;
+  Clock::time_point device_free_;  // when the device was done with the last frame
   std::atomic<bool> stopping_ = false;
   stream::JpegEncoder jpeg_;
   Worker encoder_;

@@ -101,6 +101,7 @@ void SessionView::publish_buffers() {
 
 void SessionView::release_renderer() {
   if (!renderer_) return;
+  begun_.reset();
   renderer_.reset();
   newest_.reset();
   newest_stepped_ = false;
@@ -137,7 +138,7 @@ SessionView::Work SessionView::advance(bool may_draw) {
   if (broadcast_.pump()) return Work::small;
   if (!frame_due()) return Work::none;
   if (!may_draw) return Work::held_back;
-  render_next_frame();
+  begin_next_frame();
   return Work::drawing;
 }
 
@@ -154,7 +155,8 @@ SessionView::Work SessionView::advance_step(bool may_draw) {
   if (const std::optional<StepFrame> step = session_->timeline().begin_step(first_read)) {
     adopt(step->state);
     set_draw_scale(1.0f);
-    render_frame(step->seconds);
+    begin_frame(step->seconds);
+    if (begun_) finish_frame();
     newest_stepped_ = true;
     broadcast_.pump();
     session_->timeline().end_step(*step, newest_->frame.samples);
@@ -347,14 +349,15 @@ ReadableFrame SessionView::readable_frame(bool lockstep) {
           .began = frame_began_at_};
 }
 
-void SessionView::render_next_frame() {
+void SessionView::begin_next_frame() {
   const std::chrono::duration<float> since = Clock::now() - frame_began_at_;
   newest_stepped_ = false;
-  render_frame(std::min(since.count(), max_frame_seconds));
+  begin_frame(std::min(since.count(), max_frame_seconds));
+  if (begun_ && !renderer_->in_flight()) finish_frame();
 }
 
 /// `seconds`: that have passed since the last frame.
-void SessionView::render_frame(double seconds) {
+void SessionView::begin_frame(double seconds) {
   const Clock::time_point start = Clock::now();
   session_->mark_used();
   if (state_.animation.playing) adopt_pose();
@@ -363,19 +366,25 @@ void SessionView::render_frame(double seconds) {
   // A viewer that moves the camera does not wait for a sample of the view that it leaves.
   const ViewState view_state = next_view_state(view_inputs());
   const bool refining = view_state == ViewState::refining;
-  std::optional<render::Frame> finished =
-      renderer_->render([&] { return refining && session_->version() != state_.version; });
-  if (!finished) {
+  const bool began =
+      renderer_->begin([&] { return refining && session_->version() != state_.version; });
+  if (began) {
+    begun_ = {view_state, start};
+  } else {
     frame_began_at_ = before;
-    return;
   }
-  render::Frame& frame = *finished;
+}
+
+void SessionView::finish_frame(Clock::time_point device_free) {
+  const BegunFrame begun = *std::exchange(begun_, std::nullopt);
+  render::Frame frame = renderer_->finish();
   if (frame.new_buffers) publish_buffers();
   const Clock::time_point end = Clock::now();
-  measure_frame(view_state, end - start);
-  services_.measurements.rendered(std::chrono::duration<double>(end - start).count(),
-                                  pass_timings(frame), frame.radiance_cache);
-  newest_ = describe(std::move(frame), start, end);
+  const Clock::duration taken = end - std::max(begun.start, device_free);
+  measure_frame(begun.state, taken);
+  services_.measurements.rendered(std::chrono::duration<double>(taken).count(), pass_timings(frame),
+                                  frame.radiance_cache);
+  newest_ = describe(std::move(frame), begun.start, end);
   first_frame_due_ = false;
   newest_version_ = state_.version;
   session_->reference().report_frame(newest_version_, newest_->frame.samples,

@@ -44,8 +44,14 @@ class SessionView {
   bool awake() const;
   /// What `advance` did: nothing, something short, a frame, or no frame although one is due.
   enum class Work { none, small, drawing, held_back };
-  /// Does what is most urgent: at most one frame, and none unless it `may_draw`.
+  /// Does what is most urgent: at most one frame, and none unless it `may_draw`. The device may
+  /// still work on that frame: then nothing but finish_frame() comes next.
   Work advance(bool may_draw);
+  /// Whether the device still works on a frame.
+  bool in_flight() const { return begun_.has_value(); }
+  /// Waits for it and shows it. `device_free`: when the device was done with the frame of another
+  /// view, before which it did not work on this one.
+  void finish_frame(Clock::time_point device_free = {});
   /// When there may be something to do without any event.
   std::optional<Clock::time_point> next_due() const;
   /// Releases the renderer with all its images and histories.
@@ -77,8 +83,8 @@ class SessionView {
   bool frame_due();
   ReadableFrame readable_frame(bool lockstep);
   Work advance_step(bool may_draw);
-  void render_next_frame();
-  void render_frame(double seconds);
+  void begin_next_frame();
+  void begin_frame(double seconds);
   std::shared_ptr<RenderedFrame> describe(render::Frame frame, Clock::time_point start,
                                           Clock::time_point end);
 
@@ -88,6 +94,12 @@ class SessionView {
   std::shared_ptr<Session> session_;
   Broadcast broadcast_;
   FrameReaders readers_;
+  /// A frame that the device works on.
+  struct BegunFrame {
+    ViewState state;  // that it is drawn for
+    Clock::time_point start;
+  };
+  std::optional<BegunFrame> begun_;
   std::unique_ptr<render::Renderer> renderer_;  // null while no frames are needed
   Clock::time_point needed_at_;                 // last time that it was needed
   bool first_frame_due_ = false;                // rendered without viewers

@@ -217,6 +217,58 @@ TEST_F(FramePlanTest, PassesSeeThatTheirFrameIsCanceled) {
   EXPECT_TRUE(plan_.execute());
 }
 
+// As renderers of two sessions do.
+TEST_F(FramePlanTest, OneFrameBeginsWhileTheDeviceWorksOnAnother) {
+  const auto a = image("a"), b = image("b");
+  add("add", a, b, 2.0f);
+  plan_.read_back(b);
+  plan_.compile();
+  FramePlan other(device_, {5, 3});
+  const History count = other.history("count", format);
+  other.pass("count", program_)
+      .read(count.previous)
+      .write(count.current)
+      .constants(1.0f)
+      .dispatch(other.extent());
+  other.compile();
+  for (int frame = 1; frame <= 3; ++frame) {
+    EXPECT_TRUE(plan_.begin());
+    EXPECT_TRUE(other.begin());
+    EXPECT_EQ(plan_.in_flight(), !device_.is_cpu());
+    plan_.finish();
+    EXPECT_FALSE(plan_.in_flight());
+    other.finish();
+    EXPECT_EQ(value(b), 2.0f);
+    const auto bytes = other.latest(count.current).download();
+    EXPECT_EQ(*reinterpret_cast<const float*>(bytes.data()), float(frame));
+  }
+}
+
+TEST_F(FramePlanTest, MayEndWhileTheDeviceWorksOnItsFrame) {
+  const auto a = image("a"), b = image("b");
+  add("add", a, b);
+  plan_.compile();
+  {
+    FramePlan other(device_, {512, 512});
+    const auto from = other.image("from", format), to = other.image("to", format);
+    other.pass("add", program_).read(from).write(to).constants(1.0f).dispatch(other.extent());
+    other.compile();
+    EXPECT_TRUE(other.begin());
+  }
+  plan_.execute();
+  EXPECT_EQ(value(b), 1.0f);
+}
+
+TEST_F(FramePlanTest, FramesBeginAndFinishInTurn) {
+  const auto a = image("a"), b = image("b");
+  add("add", a, b);
+  plan_.compile();
+  EXPECT_THROW(plan_.finish(), GpuError);
+  plan_.begin();
+  EXPECT_THROW(plan_.begin(), GpuError);
+  plan_.finish();
+}
+
 TEST_F(FramePlanTest, ReadsBackRequestedImageEveryFrame) {
   const History history = plan_.history("count", format);
   add("count", history.previous, history.current);

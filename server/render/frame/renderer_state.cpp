@@ -1,0 +1,164 @@
+#include "render/frame/renderer_state.hpp"
+
+#include <utility>
+
+#include "render/frame/buffer_list.hpp"
+#include "render/frame/probe.hpp"
+#include "render/views/debug_view.hpp"
+#include "render/views/view_colors.hpp"
+
+namespace heliograph::render {
+
+void choose_reference(protocol::Settings& settings, bool on_processor) {
+  protocol::Settings::Reference& reference = settings.reference;
+  if (reference.use != protocol::ReferenceUse::automatic) return;
+  const bool traces = !on_processor && settings.indirect.enabled;
+  reference.use = traces ? protocol::ReferenceUse::when_static : protocol::ReferenceUse::off;
+  if (traces) reference.scope = protocol::ReferenceScope::full;
+}
+
+std::uint32_t Renderer::State::target_samples() const {
+  if (!settings.accumulation.enabled) return 1;
+  const auto most = static_cast<std::uint32_t>(settings.accumulation.max_samples);
+  if (settings.reference.use != protocol::ReferenceUse::when_static) return most;
+  return clock.hybrid_samples.value_or(most) +
+         static_cast<std::uint32_t>(settings.reference.samples);
+}
+
+/// In the next frame, and in those that follow until the view changes.
+bool Renderer::State::reference_takes_over() const {
+  return settings.reference.use == protocol::ReferenceUse::when_static &&
+         settings.accumulation.enabled && !clock.hybrid_samples && clock.samples > 0 &&
+         clock.samples >= static_cast<std::uint32_t>(settings.accumulation.max_samples);
+}
+
+/// Changes of size, scene and settings that follow each other cost one plan together.
+void Renderer::State::discard_frame_plan() {
+  compiled.reset();
+  has_buffers = false;
+  has_previous = false;
+  sample_index = 0;
+  restart_accumulation();
+}
+
+CompiledFrame& Renderer::State::frame_plan() {
+  if (compiled) return *compiled;
+  const FrameInputs inputs{parts.programs,
+                           *scene,
+                           moving->tables(),
+                           *parts.tracer,
+                           moving->structure(),
+                           constants,
+                           half_constants,
+                           settings,
+                           clock,
+                           *moving,
+                           scene_motion,
+                           parts.split_sum_table,
+                           parts.sheen_table,
+                           parts.ltc_table,
+                           extent};
+  compiled =
+      std::make_unique<CompiledFrame>(parts, inputs, constants_buffers, extent, buffers_needed());
+  compiled->plan.set_drawn(drawn());
+  return *compiled;
+}
+
+VkExtent2D Renderer::State::drawn() const {
+  if (settings.reference.use == protocol::ReferenceUse::always) return extent;
+  return {drawn_side(extent.width, draw_scale), drawn_side(extent.height, draw_scale)};
+}
+
+void Renderer::State::set_drawn() {
+  const auto pixels = [](VkExtent2D size) { return float(size.width) * float(size.height); };
+  restart_accumulation();
+  if (!compiled) return;
+  const float before = pixels(compiled->plan.drawn());
+  compiled->plan.set_drawn(drawn());
+  clock.carried_share = std::min(before / pixels(drawn()), 1.0f);
+}
+
+void Renderer::State::change_settings(const protocol::Settings& changed) {
+  const auto scope = protocol::changed_scope(settings, changed);
+  settings = changed;
+  if (includes(scope, protocol::ResetScope::structure)) discard_frame_plan();
+  stale = true;
+  if (includes(scope, protocol::ResetScope::history)) has_previous = false;
+  if (includes(scope, protocol::ResetScope::accumulation)) restart_accumulation();
+}
+
+/// Other programs make other frames: histories of the old ones are invalid.
+void Renderer::State::use_newest_shaders() {
+  if (!parts.shader_reload) return;
+  shader_version = parts.shader_reload->version();
+  parts.shader_reload->apply();
+  const std::uint64_t programs = parts.shader_reload->program_version();
+  if (std::exchange(program_version, programs) == programs) return;
+  has_previous = false;
+  restart_accumulation();
+}
+
+std::optional<FloatImage> Renderer::State::read(std::string_view name) {
+  frame_plan();
+  if (name == present_buffers.radiance.name) return shown_radiance(*compiled);
+  const View view = find_view(name);
+  const auto image = view ? compiled->find(view.buffer->name) : std::nullopt;
+  if (!image) return std::nullopt;
+  return extract(view, read_image(image->whole, image->drawn),
+                 {constants, exposure_factor(compiled->plan, compiled->outputs.exposure)});
+}
+
+Frame Renderer::State::output() {
+  const std::string& shown = settings.view.buffer;
+  if (shown != present_buffers.output.name) {
+    if (const auto values = read(shown)) return visualise(shown, *values);
+  }
+  Frame frame;
+  frame.width = extent.width;
+  frame.height = extent.height;
+  frame.rgba = compiled->plan.read();
+  return frame;
+}
+
+/// Whether anything moved.
+bool Renderer::State::pose() {
+  bool moves = moving->advance();
+  // Without a frame before there is no motion since.
+  if (!has_previous) moves |= moving->advance();
+  return moves;
+}
+
+/// Of the next frame.
+void Renderer::State::make_constants(const shared::FrameConstants& before) {
+  constants = make_frame_constants(camera, settings, *moving, {.drawn = drawn(), .shown = extent},
+                                   sample_index++, has_previous ? &before : nullptr);
+  const SceneMotion motion_before = scene_motion;
+  scene_motion = render::scene_motion(*moving, constants, has_previous ? &before : nullptr);
+  const auto count = [&](bool changes, std::uint32_t still) {
+    if (changes) return 0u;
+    return has_previous && still < ~0u ? still + 1 : ~0u;
+  };
+  scene_motion.still_frames = count(scene_motion.any(), motion_before.still_frames);
+  scene_motion.still_light_frames =
+      count(scene_motion.light_changes(), motion_before.still_light_frames);
+  has_previous = true;
+  half_constants = at_half_size(constants);
+  constants_buffers.upload(constants, half_constants);
+}
+
+void Renderer::State::list_passes(Frame& frame) const {
+  if (begun.posing) frame.passes.push_back({"pose", protocol::PassKind::host, *begun.posing});
+  for (const auto& timing : compiled->plan.timings()) {
+    if (timing.milliseconds < 0.0f) continue;
+    const auto kind = timing.host ? protocol::PassKind::host : protocol::PassKind::device;
+    // Strips of rays are passes of one name.
+    const auto known = std::ranges::find(frame.passes, timing.name, &PassTime::name);
+    if (known == frame.passes.end()) {
+      frame.passes.push_back({timing.name, kind, timing.milliseconds});
+    } else {
+      known->milliseconds += timing.milliseconds;
+    }
+  }
+}
+
+}  // namespace heliograph::render

@@ -1,0 +1,88 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "render/api/renderer.hpp"
+#include "render/frame/compiled_frame.hpp"
+#include "render/frame/frame_constants.hpp"
+#include "render/passes/post/present.hpp"
+#include "render/resources/moving_scene.hpp"
+#include "render/resources/scene_motion.hpp"
+
+namespace heliograph::render {
+
+/// `automatic` becomes one of the others. On processors a path traced sample takes several times as
+/// long as one of the hybrid, whose mean is as similar to the truth as that of a hundred of them.
+void choose_reference(protocol::Settings& settings, bool on_processor);
+
+struct Renderer::State {
+  State(Engine::Parts& engine, std::shared_ptr<const SceneResources> empty)
+      : parts(engine), nothing(std::move(empty)), constants_buffers(engine.device) {
+    choose_reference(settings, parts.device.is_cpu());
+  }
+
+  void discard_frame_plan();
+  CompiledFrame& frame_plan();
+  VkExtent2D drawn() const;
+  void set_drawn();
+  void change_settings(const protocol::Settings& changed);
+  void use_newest_shaders();
+  Frame output();
+  /// Whether all buffers of the next frame are kept: a view of one of them needs them, too.
+  bool buffers_needed() const {
+    const std::string& shown = settings.view.buffer;
+    return keeps_buffers ||
+           (shown != present_buffers.output.name && shown != present_buffers.radiance.name);
+  }
+  std::optional<FloatImage> read(std::string_view name);
+  bool pose();
+  void make_constants(const shared::FrameConstants& before);
+  void list_passes(Frame& frame) const;
+  std::uint32_t target_samples() const;
+  bool reference_takes_over() const;
+  void restart_accumulation() {
+    clock.samples = 0;
+    clock.hybrid_samples.reset();
+    clock.carried_share = 1.0f;
+    stale = true;
+  }
+
+  Engine::Parts& parts;
+  std::shared_ptr<const SceneResources> nothing;  // the empty scene
+  FrameConstantsBuffers constants_buffers;
+  shared::FrameConstants constants{};
+  shared::FrameConstants half_constants{};  // at_half_size()
+  bool has_previous = false;
+  std::uint32_t sample_index = 0;  // frames since the history was invalidated
+  FrameClock clock;
+  SceneMotion scene_motion;
+  bool keeps_buffers = true;          // as requested
+  bool has_buffers = false;           // of the last frame
+  bool stale = true;                  // something changed since the last frame
+  std::uint64_t shader_version = 0;   // of ShaderReload::version, as of the last frame
+  std::uint64_t program_version = 0;  // of ShaderReload::program_version, likewise
+
+  std::shared_ptr<const SceneResources> scene;
+  std::optional<MovingScene> moving;  // the scene in this renderer's pose
+  scene::Camera camera;
+  protocol::Settings settings;
+  VkExtent2D extent{640, 360};  // of the finished frame
+  float draw_scale = 1.0f;
+
+  std::unique_ptr<CompiledFrame> compiled;  // absent until it is needed: see frame_plan()
+
+  /// Of the frame that has begun.
+  struct Begun {
+    std::chrono::steady_clock::time_point start;
+    std::optional<float> posing;  // milliseconds; absent: nothing moved
+    bool new_buffers = false;
+  } begun;
+};
+
+}  // namespace heliograph::render
