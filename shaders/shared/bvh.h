@@ -40,10 +40,10 @@ struct BvhInstance {
   vec4 row0;
   vec4 row1;
   vec4 row2;
-  uint root;      // link into the mesh's own hierarchy
-  uint instance;  // number: index among the scene's instances
-  uint mask;      // number: record of the mesh's alpha mask, or bvh_no_link
-  uint flat_tree; // number, 1: triangles of many instances in world space, which name their own
+  uint root;       // link into the mesh's own hierarchy
+  uint instance;   // number: index among the scene's instances
+  uint mask;       // number: record of the mesh's alpha mask, or bvh_no_link
+  uint flat_tree;  // number, 1: triangles of many instances in world space, which name their own
 };
 
 // Where rays pass through a mesh: all numbers.

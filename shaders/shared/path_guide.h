@@ -7,8 +7,8 @@ SHARED_BEGIN
 // Entries lie in buckets, in any of whose slots an entry may be. Check 0: the slot is free.
 SHARED_CONSTANT uint guide_entries = 4096u;
 SHARED_CONSTANT uint guide_bucket = 4u;
-// The hemisphere in bins of equal probability under a cosine distribution, bin by bin outward: rings
-// around the normal of so many sectors.
+// The hemisphere in bins of equal probability under a cosine distribution, bin by bin outward:
+// rings around the normal of so many sectors.
 SHARED_CONSTANT uint guide_rings = 4u;
 SHARED_CONSTANT uint guide_sectors = 4u;
 SHARED_CONSTANT uint guide_bins = 16u;

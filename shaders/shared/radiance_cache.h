@@ -63,9 +63,9 @@ struct RadianceCell {
   vec3 new_direct;  // this frame's sample; of blocked cells the normal of the plane
   uint state;
   vec3 new_indirect;
-  uint splits;  // of cells that this is a part of
-  vec3 anchor;  // the place that probes have reached, raised; of blocked cells one on the plane
-  uint moved;   // 1: since then
+  uint splits;     // of cells that this is a part of
+  vec3 anchor;     // the place that probes have reached, raised; of blocked cells one on the plane
+  uint moved;      // 1: since then
   uint bin;        // of the path guide, of this frame's gathering ray
   float gathered;  // luminance of what it brings
   uint padding0;
