@@ -26,6 +26,10 @@ inline constexpr double max_frame_rate = 240.0;
 /// Distance from the origin along each axis of cameras, their targets and lights; metres.
 inline constexpr float max_coordinate = 1e9f;
 
+/// Vertical field of view of cameras, degrees.
+inline constexpr float min_field_of_view = 1.0f;
+inline constexpr float max_field_of_view = 170.0f;
+
 /// Lengths of names, bytes.
 inline constexpr std::size_t max_session_name = 64;  // viewers, presets and buffers as well
 inline constexpr std::size_t max_node_name = 256;    // cameras, clips, lights, materials, variants

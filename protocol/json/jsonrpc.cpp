@@ -169,9 +169,17 @@ class Dispatcher::Exchange : public std::enable_shared_from_this<Exchange> {
 
   std::string joined() {
     if (!batch_) return answers_.empty() ? std::string() : std::move(answers_.front());
+    if (answers_.empty()) return {};
+    // Answers may be large: each is freed once it is copied, and the text does not grow by copies.
+    std::size_t length = answers_.size() + 1;
+    for (const std::string& answer : answers_) length += answer.size();
     std::string text;
-    for (const std::string& answer : answers_) text += (text.empty() ? "[" : ",") + answer;
-    return text.empty() ? text : text + "]";
+    text.reserve(length);
+    for (std::string& answer : answers_) {
+      text += text.empty() ? '[' : ',';
+      text += std::exchange(answer, {});
+    }
+    return text += ']';
   }
 
   const bool batch_;

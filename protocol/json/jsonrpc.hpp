@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "protocol/json/pending_answer.hpp"
 #include "protocol/methods.hpp"
 #include "protocol/result.hpp"
 
@@ -20,6 +21,8 @@ struct CallContext {
   /// The session of a caller that is no viewer; a viewer's session is known by its id.
   std::string session{main_session};
   bool view_only = false;  ///< the caller's token does not allow control
+  /// The answer to the message; null: of any size, and always waited for.
+  std::shared_ptr<PendingAnswer> answer = nullptr;
 };
 
 /// Completes a call, on any thread, at once or later; only the first result is used. If every copy

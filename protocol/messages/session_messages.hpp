@@ -189,10 +189,11 @@ struct CameraSet {
         field("up", &CameraSet::up, "The up direction of the image.")
             .range(-max_coordinate, max_coordinate),
         field("vertical_fov", &CameraSet::vertical_fov, "Vertical field of view.")
-            .range(1, 170)
+            .range(min_field_of_view, max_field_of_view)
             .unit("degrees"),
         field("name", &CameraSet::name,
-              "A scene camera to start from; the other members are applied on top.")
+              "A scene camera to start from, by its name or its number from 1 on; the other "
+              "members are applied on top.")
             .length(1, max_node_name),
         field("seq", &CameraSet::seq,
               "The client's sequence number; frames that show this camera echo it as "

@@ -326,7 +326,10 @@ export interface Camera {
 export interface CameraSetParams {
   /** Position of the camera, world space. [metres] */
   eye?: Vector3;
-  /** A scene camera to start from; the other members are applied on top. */
+  /**
+   * A scene camera to start from, by its name or its number from 1 on; the other members are
+   * applied on top.
+   */
   name?: string;
   /** The client's sequence number; frames that show this camera echo it as input_seq_echo. */
   seq?: number;

@@ -13,6 +13,7 @@
 #include "net/http/router.hpp"
 #include "net/security/access_control.hpp"
 #include "net/security/tls.hpp"
+#include "protocol/json/pending_answer.hpp"
 #include "protocol/messages/messages.hpp"
 #include "protocol/result.hpp"
 #include "session/library/upload_store.hpp"
@@ -84,8 +85,11 @@ struct ServerContext {
   std::function<void()> on_last_closed;         // called while ending, when no connection is open
   std::set<Connection*> connections;
   std::size_t outgoing_bytes = 0;  // see OutgoingBytes
-  bool draining = false;           // no new viewers are accepted
-  bool ending = false;             // all connections are being closed
+  // Of responses that are not made yet, beside those.
+  const std::shared_ptr<protocol::AnswerMemory> answer_memory =
+      std::make_shared<protocol::AnswerMemory>(max_outgoing_bytes);
+  bool draining = false;  // no new viewers are accepted
+  bool ending = false;    // all connections are being closed
 
   void enter(Connection& connection) {
     connections.insert(&connection);

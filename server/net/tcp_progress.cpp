@@ -8,6 +8,11 @@
 #include <sys/socket.h>
 
 namespace heliograph::net {
+namespace {
+
+constexpr int established = 1;  // TCP_ESTABLISHED of the C library's header
+
+}  // namespace
 
 std::uint64_t bytes_acknowledged(int socket) {
   tcp_info info{};
@@ -19,6 +24,13 @@ std::uint64_t bytes_acknowledged(int socket) {
 std::size_t bytes_unacknowledged(int socket) {
   int bytes = 0;
   return ioctl(socket, SIOCOUTQ, &bytes) == 0 ? static_cast<std::size_t>(bytes) : 0;
+}
+
+bool peer_has_closed(int socket) {
+  tcp_info info{};
+  socklen_t size = sizeof info;
+  return getsockopt(socket, IPPROTO_TCP, TCP_INFO, &info, &size) != 0 ||
+         info.tcpi_state != established;
 }
 
 void enable_keepalive(int socket) {

@@ -343,6 +343,7 @@ class Importer {
         scene_.cameras.back().node = index;
       }
     }
+    name_apart(scene_.cameras);
   }
 
   const ImportLimits& limits_;

@@ -36,6 +36,7 @@ class Session {
 
   const std::string& name() const { return core_.options.name; }
   const SessionLimits& limits() const { return core_.options.limits; }
+  bool starts_empty() const { return core_.options.starts_empty; }
   std::uint32_t rev() const;
   /// The session as `viewer` sees it.
   protocol::SessionInfo info(const std::string& viewer) const;

@@ -1,9 +1,11 @@
 #include "session/session_captures.hpp"
 
+#include <cstddef>
 #include <utility>
 
 #include "render/api/buffer_names.hpp"
 #include "session/measurements.hpp"
+#include "session/rendering/capture_content.hpp"
 
 namespace heliograph::session {
 
@@ -26,6 +28,12 @@ Result<void> SessionCaptures::accept(CaptureRequest request) {
     return known.error();
   }
   if (const auto capacity = core_.captures.check_capture_capacity(); !capacity) return capacity;
+  if (request.answer) {
+    const std::size_t file =
+        estimated_file_bytes(request.buffer, request.format, core_.width, core_.height);
+    const auto room = request.answer->reserve(request.as_base64 ? file / 3 * 4 : file);
+    if (!room) return room;
+  }
   request.ticket = core_.timeline.next_ticket();
   core_.captures.add(std::move(request));
   return {};

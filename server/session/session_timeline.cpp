@@ -148,6 +148,11 @@ void SessionTimeline::fail_steps(const protocol::Error& why) {
   fail_steps_where([](const StepRequest&) { return true; }, why);
 }
 
+void SessionTimeline::fail_abandoned_steps() {
+  fail_steps_where([](const StepRequest& step) { return step.answer && step.answer->abandoned(); },
+                   error::conflict("frames", "the caller has closed its connection"));
+}
+
 void SessionTimeline::fail_steps_of(const std::string& viewer, const protocol::Error& why) {
   fail_steps_where([&](const StepRequest& step) { return step.viewer == viewer; }, why);
 }

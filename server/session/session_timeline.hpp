@@ -39,6 +39,8 @@ class SessionTimeline {
   void end_step(const StepFrame& frame, std::uint32_t samples);
   /// All pending steps fail.
   void fail_steps(const protocol::Error& why);
+  /// Those whose caller has gone fail.
+  void fail_abandoned_steps();
   /// Those of this viewer fail.
   void fail_steps_of(const std::string& viewer, const protocol::Error& why);
 

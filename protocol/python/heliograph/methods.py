@@ -80,7 +80,8 @@ class Camera(_Group):
         """Sets the camera; absent members keep their values.
 
         eye: Position of the camera, world space. [metres]
-        name: A scene camera to start from; the other members are applied on top.
+        name: A scene camera to start from, by its name or its number from 1 on; the other
+            members are applied on top.
         seq: The client's sequence number; frames that show this camera echo it as
             input_seq_echo.
         target: The point at the centre of the image. [metres]

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
@@ -9,8 +8,11 @@
 
 #include "net/connection.hpp"
 #include "net/http/beast_messages.hpp"
+#include "net/http/request_head.hpp"
 #include "net/security/rate_limit.hpp"
+#include "net/tcp_progress.hpp"
 #include "net/websocket/paced_write.hpp"
+#include "net/websocket/upgrade_refusal.hpp"
 #include "protocol/messages/messages.hpp"
 
 namespace heliograph::net {
@@ -18,26 +20,6 @@ namespace {
 
 namespace http = beast::http;
 using boost::system::error_code;
-
-/// The error response to a request for an upgrade that no viewer can come from; nothing if valid.
-std::optional<HttpResponse> upgrade_refusal(const HttpRequest& request,
-                                            const session::SessionRegistry& sessions) {
-  if (request.path != "/ws") return text_response(404, "The WebSocket is at /ws.");
-  // 16 bytes in base64, RFC 6455 section 4.1. The version is the WebSocket's own matter.
-  const std::string_view key = request.header("sec-websocket-key");
-  if (key.size() != 24 || !key.ends_with("==")) {
-    return text_response(400, "Sec-WebSocket-Key must be 16 bytes in base64.");
-  }
-  const auto offered = header_elements(request.header("sec-websocket-protocol"));
-  if (std::find(offered.begin(), offered.end(), protocol::protocol_name) == offered.end()) {
-    return text_response(400,
-                         "This server speaks the subprotocol heliograph.v1; offer it in "
-                         "Sec-WebSocket-Protocol.");
-  }
-  const auto session = sessions.find(session_of(request));
-  if (!session) return text_response(404, session.error().message);
-  return std::nullopt;
-}
 
 /// "/api/v1/sessions/main/stream.mjpg" -> main
 std::optional<std::string> mjpeg_stream_session(const HttpRequest& request) {
@@ -53,6 +35,9 @@ std::optional<std::string> mjpeg_stream_session(const HttpRequest& request) {
 
 constexpr std::chrono::minutes max_upload_duration{10};
 constexpr std::size_t discarded_at_once = 16 * 1024;
+constexpr std::size_t head_bytes_at_once = 4 * 1024;
+// How often it is checked whether the client of an answer that is being made is still there.
+constexpr std::chrono::milliseconds presence_interval{500};
 
 HttpResponse upload_response(const session::UploadedScene& scene) {
   HttpResponse response = json_response(nlohmann::json{
@@ -69,6 +54,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
       : context_(context),
         listener_kind_(kind),
         stream_(std::move(stream)),
+        presence_timer_(stream_.get_executor()),
         calls_(calls_per_second, calls_at_once, RateLimit::Clock::now()) {
     context_.enter(*this);
   }
@@ -110,9 +96,40 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     // The first request has a short timeout, later ones of a kept-alive connection a longer one.
     stream_.next_layer().expires_after(std::exchange(first_, false) ? handshake_timeout
                                                                     : idle_timeout);
-    http::async_read_header(
-        stream_, buffer_, *parser_,
-        IoHandler([self = shared_from_this()](error_code error) { self->received_header(error); }));
+    read_head();
+  }
+
+  /// The head is examined as it came: the parser folds lines and merges repeated headers.
+  void read_head() {
+    const auto received = buffer_.data();
+    const RequestHead head =
+        examine_request_head({static_cast<const char*>(received.data()), received.size()});
+    if (!head.fault.empty()) return refuse_head(head.fault);
+    const std::size_t head_bytes = head.length > 0 ? head.length : received.size();
+    if (head_bytes > max_request_head_bytes) return received_header(http::error::header_limit);
+    if (head.length > 0) return parse_head(head.length);
+    stream_.async_read_some(buffer_.prepare(head_bytes_at_once),
+                            [self = shared_from_this()](error_code error, std::size_t bytes) {
+                              self->buffer_.commit(bytes);
+                              if (!error) return self->read_head();
+                              const bool ended = error == asio::error::eof;
+                              const bool begun = self->buffer_.size() > 0;
+                              if (ended)
+                                error = begun ? http::error::partial_message
+                                              : http::error::end_of_stream;
+                              self->received_header(error);
+                            });
+  }
+
+  void parse_head(std::size_t length) {
+    error_code error;
+    buffer_.consume(parser_->put(asio::buffer(buffer_.data().data(), length), error));
+    received_header(error);
+  }
+
+  void refuse_head(std::string_view fault) {
+    framing_.keep_alive = false;
+    send(text_response(400, fault));
   }
 
   std::size_t largest_body() const { return context_.host.dispatch_limits().max_message_bytes; }
@@ -243,11 +260,31 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
       return start_mjpeg(request, *session);
     }
     stream_.next_layer().expires_never();
-    context_.router.handle(request, [self = shared_from_this()](HttpResponse response) {
-      run_later(self->stream_.get_executor(), [self, response = std::move(response)]() mutable {
-        self->send(std::move(response));
-      });
-    });
+    const auto pending =
+        std::make_shared<protocol::PendingAnswer>(max_outgoing_bytes, context_.answer_memory);
+    watch_client(pending);
+    context_.router.handle(request, pending,
+                           [self = shared_from_this(), pending](HttpResponse response) {
+                             run_later(self->stream_.get_executor(),
+                                       [self, pending, response = std::move(response)]() mutable {
+                                         self->presence_timer_.cancel();
+                                         self->send(std::move(response));
+                                       });
+                           });
+  }
+
+  /// Gives the answer up once the client has closed the connection: its frames would be rendered in
+  /// vain. A client that closes one direction only is told so in the answer.
+  void watch_client(std::shared_ptr<protocol::PendingAnswer> answer) {
+    presence_timer_.expires_after(presence_interval);
+    on_expiry(presence_timer_,
+              [self = shared_from_this(), answer = std::move(answer)](error_code error) mutable {
+                if (error) return;
+                if (peer_has_closed(self->stream_.next_layer().socket().native_handle())) {
+                  return answer->abandon();
+                }
+                self->watch_client(std::move(answer));
+              });
   }
 
   /// The response to plain HTTP on a port that expects TLS.
@@ -341,6 +378,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   std::shared_ptr<session::UploadStore::Incoming> upload_;
   std::optional<http::request_parser<http::file_body>> upload_parser_;
   std::chrono::steady_clock::time_point upload_deadline_;
+  asio::steady_timer presence_timer_;  // runs while an answer is being made
   Framing framing_;
   OutgoingBytes outgoing_{context_.outgoing_bytes};
   BeastResponse response_;

@@ -55,6 +55,9 @@ protocol::Result<std::optional<std::uint32_t>> number_parameter(const HttpReques
 /// In lower case: host names, header names and origins are compared so.
 std::string lower(std::string_view text);
 
+/// Without the spaces and tabs around it.
+std::string_view trimmed(std::string_view text);
+
 /// The session that a request is about: ?enter=NAME, else ?session=NAME, else the main one. With
 /// both, the latter is for a balancer, which leads requests with the same value to the same server.
 std::string session_of(const HttpRequest& request);

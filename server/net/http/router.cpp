@@ -151,7 +151,7 @@ Router::Router(session::SessionHost& host, const AccessControl& access, const Tr
       options_(options),
       headers_(protecting_headers(options)) {}
 
-void Router::handle(const HttpRequest& request, Reply reply) const {
+void Router::handle(const HttpRequest& request, const Pending& pending, Reply reply) const {
   const bool health_check = request.path.starts_with("/health/");
   const std::optional<std::string> token =
       request.path == "/" ? request.parameter("token") : std::nullopt;
@@ -167,7 +167,7 @@ void Router::handle(const HttpRequest& request, Reply reply) const {
   if (draining_ && !health_check) return reply(retry_later("The server is shutting down."));
   if (request.path == "/rpc") {
     if (request.method != "POST") return reply(method_not_allowed("POST"));
-    return call(request, admission.role, std::move(reply));
+    return call(request, admission.role, pending, std::move(reply));
   }
   if (!options_.uploads.empty() && !uploaded_name(request.path).empty()) {
     return reply(method_not_allowed("PUT"));
@@ -176,7 +176,7 @@ void Router::handle(const HttpRequest& request, Reply reply) const {
     return reply(method_not_allowed("GET"));
   }
   if (const auto address = image_address(request.path)) {
-    return image(request, address->first, address->second, std::move(reply));
+    return image(request, address->first, address->second, pending, std::move(reply));
   }
   reply(answer_get(request));
 }
@@ -201,6 +201,9 @@ HttpResponse Router::answer_get(const HttpRequest& request) const {
   if (auto state = health(request)) return *std::move(state);
   if (request.path == "/metrics" && options_.metrics) return metrics();
   if (request.path == "/api/v1/schema") return schema();
+  if (request.path == "/openrpc.json") {
+    return json_response(protocol::openrpc_document().value().dump());
+  }
   if (request.path == "/ws") {
     return with_header(text_response(426, "This address requires a WebSocket upgrade."), "Upgrade",
                        "websocket");
@@ -223,9 +226,12 @@ HttpResponse Router::metrics() const {
               {.host = host_, .traffic = traffic_, .started = started_, .draining = draining_})};
 }
 
-void Router::call(const HttpRequest& request, Role role, Reply reply) const {
-  const protocol::CallContext context{
-      .viewer = {}, .session = session_of(request), .view_only = role == Role::view};
+void Router::call(const HttpRequest& request, Role role, const Pending& pending,
+                  Reply reply) const {
+  const protocol::CallContext context{.viewer = {},
+                                      .session = session_of(request),
+                                      .view_only = role == Role::view,
+                                      .answer = pending};
   host_.dispatcher().handle(request.body, context, [reply = std::move(reply)](std::string answer) {
     if (answer.empty()) return reply({.status = 204, .content_type = {}});
     reply(json_response(std::move(answer)));
@@ -233,7 +239,7 @@ void Router::call(const HttpRequest& request, Role role, Reply reply) const {
 }
 
 void Router::image(const HttpRequest& request, std::string_view session, std::string_view extension,
-                   Reply reply) const {
+                   const Pending& pending, Reply reply) const {
   const auto found = host_.sessions().find(session);
   if (!found) return reply(error_response(found.error()));
   const ImageKind* const kind = image_kind(extension);
@@ -242,6 +248,7 @@ void Router::image(const HttpRequest& request, std::string_view session, std::st
   }
   session::CaptureRequest capture;
   capture.format = kind->format;
+  capture.answer = pending;
   capture.buffer = request.parameter("buffer").value_or("output");
   const auto samples = number_parameter(request, "samples", 1, protocol::max_samples_per_pixel);
   if (!samples) return reply(error_response(samples.error()));

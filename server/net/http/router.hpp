@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "net/http/http_message.hpp"
 #include "net/http/metrics.hpp"
 #include "net/security/access_control.hpp"
+#include "protocol/json/pending_answer.hpp"
 #include "session/session_host.hpp"
 
 namespace heliograph::net {
@@ -31,8 +33,10 @@ class Router {
   Router(session::SessionHost& host, const AccessControl& access, const Traffic& traffic,
          const RouterOptions& options);
 
-  /// Calls `reply` once, here or on another thread.
-  void handle(const HttpRequest& request, Reply reply) const;
+  using Pending = std::shared_ptr<protocol::PendingAnswer>;
+
+  /// Calls `reply` once, here or on another thread. `pending`: the answer while it is being made.
+  void handle(const HttpRequest& request, const Pending& pending, Reply reply) const;
   /// 409 if a scene that was not uploaded has this name.
   std::optional<HttpResponse> name_conflict(std::string_view scene) const;
   /// The response on the metrics port: metrics and health, without a token.
@@ -46,9 +50,9 @@ class Router {
   HttpResponse answer_get(const HttpRequest& request) const;
   std::optional<HttpResponse> health(const HttpRequest& request) const;
   HttpResponse metrics() const;
-  void call(const HttpRequest& request, Role role, Reply reply) const;
+  void call(const HttpRequest& request, Role role, const Pending& pending, Reply reply) const;
   void image(const HttpRequest& request, std::string_view session, std::string_view extension,
-             Reply reply) const;
+             const Pending& pending, Reply reply) const;
 
   session::SessionHost& host_;
   const AccessControl& access_;

@@ -36,6 +36,7 @@ constexpr std::size_t max_pending_bytes = 256u << 20;
 constexpr std::chrono::seconds stall_timeout{2};
 constexpr std::chrono::seconds liveness_interval{5};
 
+constexpr std::uint16_t last_close_code = 4999;  // RFC 6455 section 7.4.2
 constexpr std::uint16_t session_ended = 4003;
 constexpr std::uint16_t slow_consumer = 4004;
 constexpr int reconnect_after_ms = 1000;
@@ -76,6 +77,10 @@ class ViewerConnection : public Connection,
     socket_.auto_fragment(false);
     socket_.control_callback([this](websocket::frame_type kind, beast::string_view) {
       liveness_.received(Liveness::Clock::now());
+      // Beast would repeat it; it refuses all other codes that may not be sent.
+      if (kind == websocket::frame_type::close && socket_.reason().code > last_close_code) {
+        close(websocket::close_code::protocol_error, "the close code is out of range");
+      }
       if (kind == websocket::frame_type::ping && !pings_.allow(RateLimit::Clock::now())) {
         disconnect_rate_limited("too many pings");
       }
@@ -169,18 +174,20 @@ class ViewerConnection : public Connection,
 
   void call(std::string message) {
     const auto text = std::make_shared<const std::string>(std::move(message));
-    context_.host.dispatcher().handle(*text, {.viewer = viewer_, .view_only = view_only_},
-                                      [text, weak = weak_from_this()](std::string answer) {
-                                        const auto self = weak.lock();
-                                        if (!self || answer.empty()) return;
-                                        if (answer.size() <= small_answer)
-                                          return self->send(std::move(answer), {});
-                                        run_later(
-                                            self->socket_.get_executor(),
-                                            [self, text, answer = std::move(answer)]() mutable {
-                                              self->enqueue_large(std::move(answer), *text);
-                                            });
-                                      });
+    const auto pending =
+        std::make_shared<protocol::PendingAnswer>(max_pending_bytes, context_.answer_memory);
+    const protocol::CallContext caller{
+        .viewer = viewer_, .view_only = view_only_, .answer = pending};
+    context_.host.dispatcher().handle(
+        *text, caller, [text, pending, weak = weak_from_this()](std::string answer) {
+          const auto self = weak.lock();
+          if (!self || answer.empty()) return;
+          if (answer.size() <= small_answer) return self->send(std::move(answer), {});
+          run_later(self->socket_.get_executor(),
+                    [self, text, pending, answer = std::move(answer)]() mutable {
+                      self->enqueue_large(std::move(answer), *text);
+                    });
+        });
   }
 
   void enqueue_large(std::string answer, std::string_view message) {

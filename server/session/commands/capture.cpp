@@ -13,7 +13,7 @@ using protocol::Result;
 
 namespace {
 
-void capture(Session& session, const FrameCapture& request, const std::string& viewer,
+void capture(Session& session, const FrameCapture& request, const protocol::CallContext& context,
              protocol::Completion<CapturedFrame> done) {
   const auto answer = [request, done](Result<Capture> capture) {
     if (!capture) return done(capture.error());
@@ -27,7 +27,9 @@ void capture(Session& session, const FrameCapture& request, const std::string& v
   const Result<void> accepted = session.captures().request_capture({.buffer = request.buffer,
                                                                     .format = request.format,
                                                                     .samples = request.samples,
-                                                                    .viewer = viewer,
+                                                                    .viewer = context.viewer,
+                                                                    .answer = context.answer,
+                                                                    .as_base64 = true,
                                                                     .done = answer});
   if (!accepted) done(accepted.error());
 }
@@ -45,7 +47,7 @@ void add_capture_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
                                              protocol::Completion<CapturedFrame> done) {
     const auto session = host.sessions().session_of(context);
     if (!session) return done(session.error());
-    capture(**session, request, context.viewer, std::move(done));
+    capture(**session, request, context, std::move(done));
   });
 }
 

@@ -19,8 +19,11 @@ void add_frame_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
                                               protocol::Completion<StepState> done) {
     const auto session = host.sessions().session_of(context);
     if (!session) return done(session.error());
-    const Result<void> accepted = (*session)->timeline().request_step(
-        {.frames = request.frames, .dt = request.dt, .viewer = context.viewer, .done = done});
+    const Result<void> accepted = (*session)->timeline().request_step({.frames = request.frames,
+                                                                       .dt = request.dt,
+                                                                       .viewer = context.viewer,
+                                                                       .answer = context.answer,
+                                                                       .done = done});
     if (!accepted) done(accepted.error());
   });
   add_command<methods::frame_run>(

@@ -140,6 +140,25 @@ bool reads_other_buffers(std::string_view buffer, ImageFormat format) {
   return buffer != output_buffer || format == ImageFormat::exr;
 }
 
+std::size_t estimated_file_bytes(std::string_view buffer, ImageFormat format, std::uint32_t width,
+                                 std::uint32_t height) {
+  constexpr std::size_t values = 4 * sizeof(float);  // the channels of a buffer, at most
+  constexpr std::size_t layers = 15 * sizeof(float);
+  const bool output = buffer == output_buffer;
+  const std::size_t pixels = std::size_t{width} * height;
+  switch (format) {
+    case ImageFormat::png:
+      return 3 * pixels;
+    case ImageFormat::jpeg:
+      return pixels;
+    case ImageFormat::npy:
+      return (output ? 3 : values) * pixels;
+    case ImageFormat::exr:  // is compressed to a half, about
+      return (output ? layers : values) / 2 * pixels;
+  }
+  return 0;
+}
+
 Result<CaptureContent> read_content(render::Renderer& renderer, std::string_view buffer,
                                     ImageFormat format) {
   const bool as_image = format == ImageFormat::png || format == ImageFormat::jpeg ||

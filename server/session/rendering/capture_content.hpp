@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string_view>
 #include <variant>
@@ -27,6 +28,11 @@ struct CaptureContent {
 
 /// Whether read_content() reads buffers that not every frame keeps: render::Renderer::keep_buffers.
 bool reads_other_buffers(std::string_view buffer, protocol::ImageFormat format);
+
+/// Bytes of such a file, before its content is known: what images are rarely above, and arrays
+/// never.
+std::size_t estimated_file_bytes(std::string_view buffer, protocol::ImageFormat format,
+                                 std::uint32_t width, std::uint32_t height);
 
 /// Reads the buffer as of the last frame.
 protocol::Result<CaptureContent> read_content(render::Renderer& renderer, std::string_view buffer,

@@ -56,10 +56,13 @@ void FrameReaders::collect() {
 /// A viewer in another session receives the error; one that has disconnected does not.
 void FrameReaders::fail_captures_of_departed() {
   std::erase_if(captures_, [&](const PendingCapture& capture) {
-    const std::string& viewer = capture.request.viewer;
-    if (viewer.empty() || session_.viewers().has(viewer)) return false;
-    capture.request.done(
-        protocol::error::not_found("session", "the viewer has left the session of the capture"));
+    const CaptureRequest& request = capture.request;
+    const bool departed = !request.viewer.empty() && !session_.viewers().has(request.viewer);
+    const bool abandoned = request.answer && request.answer->abandoned();
+    if (!departed && !abandoned) return false;
+    request.done(protocol::error::not_found(
+        "session", departed ? "the viewer has left the session of the capture"
+                            : "the caller has closed its connection"));
     return true;
   });
 }

@@ -29,7 +29,7 @@ class FrameReaders {
   FrameReaders(Session& session, Worker& capture_writer, Measurements& measurements,
                WakeEvent& written);
 
-  /// Takes those that the session has accepted; captures of viewers that have left fail.
+  /// Takes those that the session has accepted; those without a caller fail.
   void collect();
   bool empty() const { return captures_.empty() && probes_.empty(); }
   bool has_captures() const { return !captures_.empty(); }

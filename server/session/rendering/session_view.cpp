@@ -145,6 +145,7 @@ SessionView::Work SessionView::advance(bool may_draw) {
 /// One requested frame, at full resolution whatever it takes; between steps the frame can be read
 /// by what was requested before the next one.
 SessionView::Work SessionView::advance_step(bool may_draw) {
+  session_->timeline().fail_abandoned_steps();
   if (!newest_stepped_) readers_.fail_before_first_step();
   readers_.answer_probes(readable_frame(true));
   if (readers_.answer_captures(readable_frame(true))) return Work::small;
@@ -327,7 +328,7 @@ ViewInputs SessionView::view_inputs() const {
 bool SessionView::frame_due() {
   const bool reference =
       state_.reference_started && state_.settings.reference.use == protocol::ReferenceUse::always;
-  const bool first = first_frame_due_ && state_.resources;
+  const bool first = first_frame_due_ && (state_.resources || session_->starts_empty());
   return should_draw(next_view_state(view_inputs()),
                      {.needs_frame = needs_frame(),
                       .requested = first || reference || !readers_.empty(),

@@ -9,6 +9,7 @@
 #include "protocol/json/suggestions.hpp"
 #include "scene/animation/pose.hpp"
 #include "scene/camera.hpp"
+#include "scene/camera_choice.hpp"
 #include "session/library/scene_description.hpp"
 
 namespace heliograph::session {
@@ -19,11 +20,9 @@ namespace error = protocol::error;
 namespace {
 
 Result<scene::Camera> named_camera(const scene::Scene& scene, const std::string& name) {
+  if (const scene::Camera* camera = scene::find_camera(scene, name)) return *camera;
   std::vector<std::string_view> names;
-  for (const scene::Camera& camera : scene.cameras) {
-    if (camera.name == name) return camera;
-    names.push_back(camera.name);
-  }
+  for (const scene::Camera& camera : scene.cameras) names.push_back(camera.name);
   return error::not_found("name",
                           "the scene has no such camera" + protocol::suggestion(name, names));
 }
@@ -41,6 +40,28 @@ bool is_in_range(const scene::Camera& camera) {
   const glm::vec3 limit(protocol::max_coordinate);
   return glm::all(glm::lessThanEqual(glm::abs(camera.eye), limit)) &&
          glm::all(glm::lessThanEqual(glm::abs(camera.target), limit));
+}
+
+glm::vec3 in_range(const glm::vec3& point) {
+  return glm::clamp(point, -protocol::max_coordinate, protocol::max_coordinate);
+}
+
+/// A camera that shows all of the scene, or as much of a huge one as camera.set can show, too.
+scene::Camera fitting_camera(const scene::Scene& scene, float vertical_fov, float aspect) {
+  const float fov =
+      std::clamp(vertical_fov, protocol::min_field_of_view, protocol::max_field_of_view);
+  scene::Camera camera = scene::fit_camera(scene.bounds, fov, aspect);
+  if (is_in_range(camera)) return camera;
+  const glm::vec3 away =
+      glm::vec3(glm::normalize(glm::dvec3(camera.eye) - glm::dvec3(camera.target)) *
+                (1e-3 * double{protocol::max_coordinate}));
+  camera.eye = in_range(camera.eye);
+  camera.target = in_range(camera.target);
+  if (has_direction(camera)) return camera;
+  // Both were beyond the same corner of the range.
+  camera.target = in_range(camera.eye - away);
+  if (!has_direction(camera)) camera.eye = in_range(camera.target + away);
+  return camera;
 }
 
 Result<scene::Camera> requested_camera(scene::Camera camera, const protocol::CameraSet& request) {
@@ -102,7 +123,7 @@ void CameraState::copy_from(const CameraState& other) {
 void CameraState::reset(const scene::Scene& scene, float aspect) {
   ++discontinuities_;
   if (scene.cameras.empty()) {
-    camera_ = scene::fit_camera(scene.bounds, scene::Camera().vertical_fov, aspect);
+    camera_ = fitting_camera(scene, scene::Camera().vertical_fov, aspect);
     name_.reset();
   } else {
     camera_ = scene.cameras.front();
@@ -123,7 +144,7 @@ Result<void> CameraState::set(const protocol::CameraSet& request, const scene::S
   if (request.seq) input_seqs_[by] = *request.seq;
   if (request.name) ++discontinuities_;
   const bool adjusted = request.eye || request.target || request.up || request.vertical_fov;
-  std::optional<std::string> name = request.name ? request.name : name_;
+  std::optional<std::string> name = request.name ? camera->name : name_;
   move(*camera, adjusted ? std::nullopt : std::move(name));
   return {};
 }
@@ -145,7 +166,7 @@ Result<void> CameraState::orbit(const protocol::CameraOrbit& request, const std:
 
 void CameraState::fit(const scene::Scene& scene, float aspect) {
   ++discontinuities_;
-  move(scene::fit_camera(scene.bounds, camera_.vertical_fov, aspect), std::nullopt);
+  move(fitting_camera(scene, camera_.vertical_fov, aspect), std::nullopt);
 }
 
 void CameraState::move(const scene::Camera& camera, std::optional<std::string> name) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "protocol/json/pending_answer.hpp"
 #include "protocol/messages/kinds.hpp"
 #include "protocol/result.hpp"
 #include "session/state/ticket.hpp"
@@ -35,6 +36,9 @@ struct CaptureRequest {
   std::optional<std::uint32_t> samples;
   /// The viewer that asks; empty for a caller without a stream. Dropped when the viewer leaves.
   std::string viewer;
+  /// What the file goes into; null: of any size. The capture is dropped where it is abandoned.
+  std::shared_ptr<protocol::PendingAnswer> answer = nullptr;
+  bool as_base64 = false;  // in that answer
   /// In lockstep only; given by the session.
   std::optional<Ticket> ticket;
   /// Called once, on any thread.

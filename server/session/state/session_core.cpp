@@ -56,7 +56,7 @@ RenderState SessionCore::snapshot() const {
 
 Result<void> SessionCore::require_scene() const {
   if (scene) return {};
-  return protocol::error::not_ready("no scene is loaded");
+  return protocol::error::not_ready("no scene is loaded: scene.load shows one of scene.list");
 }
 
 Result<protocol::SettingsApplied> SessionCore::patch_settings(const protocol::RawJson& patch,

@@ -21,6 +21,8 @@ struct SessionOptions {
   std::uint32_t height = 720;
   protocol::Settings settings;
   SessionLimits limits;
+  /// No scene will be loaded at the start: the first frame does not wait for one.
+  bool starts_empty = false;
 };
 
 }  // namespace heliograph::session

@@ -3,10 +3,12 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "protocol/json/pending_answer.hpp"
 #include "protocol/messages/messages.hpp"
 #include "protocol/result.hpp"
 #include "session/state/render_state.hpp"
@@ -20,6 +22,8 @@ struct StepRequest {
   double dt = 0.0;  // seconds that pass before each of them
   /// The viewer that asks; empty for a caller without a stream. Dropped when the viewer leaves.
   std::string viewer;
+  /// The answer to the request; the step is dropped where it is abandoned. Null: it never is.
+  std::shared_ptr<const protocol::PendingAnswer> answer = nullptr;
   /// Called once, on any thread, without locks.
   std::function<void(protocol::Result<protocol::StepState>)> done;
 };

@@ -91,6 +91,44 @@ class Framing(ServerTestCase):
                 status, _ = raw.upgrade(**headers)
                 self.assertIn(status, (400, 426), headers)
 
+    def test_ambiguous_requests_are_refused_and_their_connection_ends(self):
+        post, host = "POST /rpc HTTP/1.1", "Host: 127.0.0.1"
+        hidden = "GET /metrics HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
+        for lines in (["GET / HTTP/1.1", host, "Host: evil.example"],
+                      ["GET / HTTP/1.1", host, host], ["GET / HTTP/1.1"],
+                      ["GET / HTTP/1.1", "Host: 127.0.0.1, evil.example"],
+                      [post, host, "Content-Length: 5", "Content-Length: 5"],
+                      [post, host, "Content-Length: 5", "Content-Length: 0"],
+                      [post, host, "Content-Length: 5, 5"],
+                      [post, host, "Content-Length: 5", "Transfer-Encoding: chunked"],
+                      [post, host, "Transfer-Encoding: chunked", "Content-Length: 5"],
+                      [post, host, "Transfer-Encoding: gzip"],
+                      [post, host, "Transfer-Encoding: chunked, identity"],
+                      ["POST /rpc HTTP/1.0", host, "Transfer-Encoding: chunked"],
+                      ["GET / HTTP/1.1", host, "X-First: a", " folded"],
+                      ["GET / HTTP/1.1", " " + host], ["GET / HTTP/1.1", host, "X: a\rY: b"],
+                      ["GET / HTTP/1.1", host, "X: a\nContent-Length: 5"],
+                      ["GET / HTTP/1.1\nHost: 127.0.0.1"]):
+            with RawSocket(self.server) as raw:
+                raw.send(("\r\n".join(lines) + "\r\n\r\n" + hidden).encode())
+                answer = raw.read_until(b"\r\n\r\n")
+                self.assertTrue(answer.startswith(b"HTTP/1.1 400 "), (lines, answer))
+                self.assertIn(b"connection: close", answer.lower(), lines)
+                with self.assertRaises(ConnectionError):
+                    raw.read_until(b"HTTP/1.1 200")
+
+    def test_a_head_may_come_byte_by_byte_and_with_the_next_request(self):
+        request = b"GET /health/live HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
+        with RawSocket(self.server) as raw:
+            for i in range(len(request)):
+                raw.send(request[i:i + 1])
+            raw.read_until(b"live\n")
+            raw.send(request + request + request[:30])
+            raw.read_until(b"live\n")
+            raw.read_until(b"live\n")
+            raw.send(request[30:])
+            raw.read_until(b"live\n")
+
     def test_requests_that_are_not_http(self):
         for data in (b"\x16\x03\x01\x02\x00\x01\x00\x01\xfc\x03\x03", b"nonsense\r\n\r\n",
                      b"GET / HTTP/9.9\r\n\r\n", b"GET  \r\n\r\n", b"\r\n" * 100,

@@ -1,10 +1,12 @@
 """HTTP: responses without body, persistent connections, streams beyond the limit of viewers, pages
 of other origins, responses too large for a WebSocket."""
 
+import asyncio
 import json
 import re
 import socket
 import struct
+import threading
 import time
 
 from harness.exposition import parse
@@ -73,12 +75,41 @@ class Answers(ServerTestCase):
             self.assertEqual([answer["id"] for answer in answers],
                              [f"capture {i}" for i in range(7)])
             self.assertGreater(sum(len(answer["result"]["data"]) for answer in answers), 128 << 20)
-            # What no viewer could be sent is refused, each call by its name.
-            for i, answer in enumerate(await batch(viewer, 14)):
-                self.assert_error(answer, -32013, limit="MiB")
+            # What would not fit is refused before it is made, each call by its name.
+            answers = await batch(viewer, 30)
+            self.assertEqual([answer["id"] for answer in answers],
+                             [f"capture {i}" for i in range(30)])
+            self.assertEqual(["result" in answer for answer in answers], [True] * 13 + [False] * 17)
+            for answer in answers[13:]:
+                self.assert_error(answer, -32013, limit="256 MiB")
                 self.assertIn("HTTP", answer["error"]["message"])
-                self.assertEqual(answer["id"], f"capture {i}")
             await viewer.call("camera.get")
+
+    async def test_large_batches_take_no_more_memory_than_their_answer_may(self):
+        self.server.call("stream.configure", {"width": 1920, "height": 1080})
+        self.addCleanup(self.server.call, "stream.configure", {"width": 160, "height": 90})
+        params = {"buffer": "gbuffer.motion", "format": "npy", "samples": 1}
+        self.server.call("frame.capture", params)
+        before = self.server.memory_bytes()
+        peak = [before]
+        answered = threading.Event()
+
+        def measure():
+            while not answered.wait(0.01):
+                peak.append(self.server.memory_bytes())
+        measuring = threading.Thread(target=measure)
+        async with Viewer(self.server) as viewer:
+            measuring.start()
+            await viewer.send(json.dumps([{"jsonrpc": "2.0", "id": i, "method": "frame.capture",
+                                           "params": params} for i in range(32)]))
+            try:
+                answers = await asyncio.wait_for(viewer.unasked.get(), 60)
+            finally:
+                answered.set()
+                measuring.join()
+        self.assertEqual(sum("result" in answer for answer in answers), 6)
+        # 32 answers would be 1.4 GB. One of 253 MiB exists in parts and joined for a moment.
+        self.assertLess(max(peak) - before, 900 << 20)
 
     def test_many_responses_do_not_disconnect_a_reading_client(self):
         with RawSocket(self.server) as raw:

@@ -3,12 +3,14 @@
 import asyncio
 import base64
 import hashlib
+import json
 import os
 import shutil
 import tempfile
 import time
 
 from harness.models import Model
+from harness.raw_socket import RawSocket
 from harness.server import Server, ServerTestCase
 from harness.viewer import Viewer
 
@@ -196,6 +198,20 @@ class Lockstep(ServerTestCase):
         state = await asyncio.to_thread(self.step, 1)
         self.assertLess(state["frames"], 10000)
         # The time of frames that were not drawn has not passed.
+        self.assertAlmostEqual(state["seconds"], state["frames"] * DT)
+
+    def test_steps_of_a_caller_over_http_that_has_gone_are_dropped(self):
+        call = json.dumps({"jsonrpc": "2.0", "id": 1, "method": "frame.step",
+                           "params": {"frames": 100000, "dt": DT}}).encode()
+        with RawSocket(self.server) as raw:
+            raw.send(b"POST /rpc HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: %d\r\n\r\n%s"
+                     % (len(call), call))
+            time.sleep(1)
+        begin = time.monotonic()
+        state = self.step(1)
+        self.assertLess(time.monotonic() - begin, 5)
+        self.assertGreater(state["frames"], 1)
+        self.assertLess(state["frames"], 10000)
         self.assertAlmostEqual(state["seconds"], state["frames"] * DT)
 
     async def test_leaving_lockstep_fails_pending_steps(self):

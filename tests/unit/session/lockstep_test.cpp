@@ -63,6 +63,25 @@ TEST_F(LockstepTest, AnswersAfterTheLastFrame) {
   EXPECT_FALSE(session_.timeline().begin_step({})) << "one frame too many";
 }
 
+TEST_F(LockstepTest, StepsWithoutACallerAreNotDrawn) {
+  const auto gone =
+      std::make_shared<protocol::PendingAnswer>(1, std::make_shared<protocol::AnswerMemory>(1));
+  std::optional<Result<StepState>> dropped;
+  ASSERT_TRUE(session_.timeline().request_step(
+      {.frames = 100, .dt = 0.5, .answer = gone, .done = [&](Result<StepState> state) {
+         dropped = std::move(state);
+       }}));
+  ASSERT_TRUE(ask(2, 0.25));
+  session_.timeline().fail_abandoned_steps();
+  EXPECT_FALSE(dropped) << "the caller still waits";
+  gone->abandon();
+  session_.timeline().fail_abandoned_steps();
+  ASSERT_TRUE(dropped);
+  EXPECT_EQ(dropped->error().code, ErrorCode::conflict);
+  EXPECT_EQ(draw_all(), 2) << "those of another caller";
+  EXPECT_DOUBLE_EQ((**answer_).seconds, 0.5) << "the time of dropped frames does not pass";
+}
+
 TEST_F(LockstepTest, ZeroFramesEnterLockstep) {
   ASSERT_TRUE(ask(0, 0.1));
   ASSERT_TRUE(answer_ && *answer_);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "session/state/camera_state.hpp"
 #include "session/state/capture_queue.hpp"
@@ -56,6 +57,44 @@ TEST_F(CameraStateTest, JumpsAreDiscontinuitiesAndMovesAreNot) {
   camera_.fit(scene_, 1.0f);
   camera_.reset(scene_, 1.0f);
   EXPECT_EQ(camera_.discontinuities(), before + 3);
+}
+
+bool is_settable(const scene::Camera& camera) {
+  const glm::vec3 limit(protocol::max_coordinate);
+  return glm::all(glm::lessThanEqual(glm::abs(camera.eye), limit)) &&
+         glm::all(glm::lessThanEqual(glm::abs(camera.target), limit)) &&
+         camera.vertical_fov >= protocol::min_field_of_view &&
+         camera.vertical_fov <= protocol::max_field_of_view;
+}
+
+TEST(FittedCamera, IsWithinTheRangeOfCameraSet) {
+  for (const auto& [from, to] : {std::pair{glm::vec3(-1e11f), glm::vec3(1e11f)},
+                                 std::pair{glm::vec3(5e11f), glm::vec3(6e11f)},
+                                 std::pair{glm::vec3(-6e11f), glm::vec3(-5e11f)},
+                                 std::pair{glm::vec3(9.99e8f), glm::vec3(1e9f)}}) {
+    scene::Scene scene;
+    scene.bounds.include(from);
+    scene.bounds.include(to);
+    CameraState camera;
+    camera.reset(scene, 1.5f);
+    EXPECT_TRUE(is_settable(camera.camera())) << from.x;
+    camera.fit(scene, 1.5f);
+    EXPECT_TRUE(is_settable(camera.camera())) << from.x;
+    const protocol::Camera message = camera.message(1);
+    EXPECT_TRUE(camera.set({.eye = message.eye, .target = message.target}, scene, "")) << from.x;
+  }
+}
+
+TEST(FittedCamera, BringsTheFieldOfViewOfASceneCameraIntoRange) {
+  scene::Scene scene = unit_box();
+  for (const auto& [of_scene, fitted] : {std::pair{0.2f, 1.0f}, std::pair{175.0f, 170.0f}}) {
+    scene.cameras[0].vertical_fov = of_scene;
+    CameraState camera;
+    camera.reset(scene, 1.0f);
+    camera.fit(scene, 1.0f);
+    EXPECT_FLOAT_EQ(camera.camera().vertical_fov, fitted);
+    EXPECT_TRUE(is_settable(camera.camera()));
+  }
 }
 
 TEST(CaptureQueue, ACaptureIsPendingUntilItIsAnswered) {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <string>
 
 namespace heliograph::scene {
 namespace {
@@ -69,6 +71,18 @@ std::vector<Camera> read_cameras(const JsonValue& root) {
     (type == "perspective" ? read_perspective : read_orthographic)(*properties, camera);
   }
   return cameras;
+}
+
+void name_apart(std::vector<Camera>& cameras) {
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < cameras.size(); ++i) {
+    std::string& name = cameras[i].name;
+    if (name.empty()) name = "camera " + std::to_string(i + 1);
+    const std::string requested = name;
+    for (int number = 2; !names.insert(name).second; ++number) {
+      name = requested + " " + std::to_string(number);
+    }
+  }
 }
 
 Camera place_camera(Camera camera, const std::string& node_name, const glm::mat4& world,

@@ -1,8 +1,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "scene/camera.hpp"
+#include "scene/camera_choice.hpp"
 #include "tests/unit/scene/support/gltf_builder.hpp"
 
 namespace heliograph::scene::test {
@@ -117,6 +120,27 @@ TEST(Cameras, TargetIsNeverBehindEye) {
   builder.json["nodes"][1]["translation"] = {0, 0, -50};
   const Camera camera = builder.import().cameras[0];
   EXPECT_NEAR(camera.target.z, -50.1f, 1e-3f);
+}
+
+TEST(Cameras, CanAllBeChosenByNameAndNumber) {
+  GltfBuilder builder = triangle();
+  builder.add("cameras",
+              {{"type", "perspective"}, {"perspective", {{"yfov", 1.0}, {"znear", 0.2}}}});
+  for (const char* const name : {"", "top", "top", "camera 5", "", "2"}) {
+    builder.json["scenes"][0]["nodes"].push_back(builder.json["nodes"].size());
+    builder.add("nodes", {{"camera", 0}, {"name", name}});
+  }
+  const Scene scene = builder.import();
+  std::vector<std::string> names;
+  for (const Camera& camera : scene.cameras) names.push_back(camera.name);
+  EXPECT_EQ(names,
+            (std::vector<std::string>{"camera 1", "top", "top 2", "camera 5", "camera 5 2", "2"}));
+  for (const Camera& camera : scene.cameras) EXPECT_EQ(find_camera(scene, camera.name), &camera);
+  EXPECT_EQ(find_camera(scene, "3"), &scene.cameras[2]);
+  EXPECT_EQ(find_camera(scene, "2"), &scene.cameras[5]) << "names come first";
+  for (const char* const wrong : {"", "0", "7", "-1", "1 ", "99999999999999999999"}) {
+    EXPECT_EQ(find_camera(scene, wrong), nullptr) << wrong;
+  }
 }
 
 TEST(Lights, AreTransformedToWorldSpace) {
