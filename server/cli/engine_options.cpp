@@ -1,15 +1,21 @@
 #include "cli/engine_options.hpp"
 
+#include <spdlog/spdlog.h>
+
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <string>
 
 #include "protocol/settings/presets.hpp"
 #include "protocol/settings/settings_json.hpp"
 #include "render/api/buffer_names.hpp"
+#include "render/api/device_lost.hpp"
 
 namespace heliograph::cli {
 namespace {
+
+constexpr int max_losses = 3;  // in a row
 
 /// $XDG_CACHE_HOME/heliograph or ~/.cache/heliograph; empty if neither variable is set.
 std::filesystem::path cache_folder() {
@@ -32,6 +38,20 @@ render::EngineOptions engine_options(const DeviceOptions& options) {
           .validation = std::getenv("HELIOGRAPH_VALIDATION") != nullptr,
           .cache_folder = cache_folder(),
           .shader_folder = options.shader_dir};
+}
+
+std::unique_ptr<render::Engine> make_engine(const DeviceOptions& options) {
+  for (int losses = 1;; ++losses) {
+    try {
+      return std::make_unique<render::Engine>(engine_options(options));
+    } catch (const render::DeviceLost& failure) {
+      if (losses == max_losses) {
+        throw std::runtime_error("the graphics device was lost " + std::to_string(losses) +
+                                 " times while it was set up: " + failure.what());
+      }
+      spdlog::warn("the device was lost while it was set up; trying again ({})", failure.what());
+    }
+  }
 }
 
 protocol::Settings parse_settings(const SettingsOptions& options) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <memory>
+
 #include "cli/options.hpp"
 #include "protocol/settings/settings.hpp"
 #include "render/api/renderer.hpp"
@@ -7,6 +9,9 @@
 namespace heliograph::cli {
 
 render::EngineOptions engine_options(const DeviceOptions& options);
+/// The device, set up. A device that is lost meanwhile is set up again, a few times.
+/// @throws std::runtime_error
+std::unique_ptr<render::Engine> make_engine(const DeviceOptions& options);
 
 /// The defaults with the preset and the "path=value" assignments of the command line.
 /// @throws std::invalid_argument

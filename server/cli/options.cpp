@@ -37,6 +37,9 @@ constexpr const char* render_examples = R"text(Examples:
   heliograph render helmet.glb -o dark.png --environment studio.hdr --set exposure.compensation=-1
   heliograph render atrium.glb -o atrium.png --timings --frames 32
   heliograph render fox.glb -o run.png --clip Run --time 0.2 --frames 24
+  heliograph render *.glb -o "{scene}_{camera}.png" --camera all --width 640
+  heliograph render helmet.glb -o turn_%03d.png --turntable 36
+  heliograph render helmet.glb -o - > helmet.png
   heliograph render pillars.glb -o svgf.png --preset svgf --set accumulation.blend_samples=4096
   heliograph render pillars.glb -o reference.png --reference full --samples 1024)text";
 
@@ -49,24 +52,37 @@ constexpr const char* schema_examples = R"text(Examples:
 
 constexpr const char* health_examples = R"text(Examples:
   heliograph health                    the server of the same environment and --config
-  heliograph health --url http://127.0.0.1:9000/health/ready)text";
+  heliograph health --url http://127.0.0.1:9000)text";
 
 CLI::App* add_render(CLI::App& app, RenderOptions& options) {
   CLI::App* command =
       app.add_subcommand("render", "Render an image, or the frames of a clip, into files");
-  command->add_option("scene", options.scene, "A .glb or .gltf file")
+  command->add_option("scene", options.scenes, "One or more .glb or .gltf files")
       ->type_name("FILE")
       ->required();
   command
       ->add_option("-o,--output", options.output,
-                   "File to write: .png or .jpg; .exr or .npy for values")
+                   "File to write: .png or .jpg; .exr or .npy for values. {scene}, {camera} and "
+                   "{frame:04} (or %04d) in the name stand for what is in the image; \"-\" is "
+                   "standard output")
       ->type_name("FILE")
       ->required();
-  add_size_options(*command, options.width, options.height, "1280x720");
   command
-      ->add_option("--camera", options.camera,
-                   "Camera of the scene [the first; without cameras the whole scene is in view]")
+      ->add_option("--format", options.format,
+                   "Format of the files [by their extension; png for -]")
+      ->check(CLI::IsMember({"png", "jpg", "exr", "npy"}));
+  add_size_options(*command, options.width, options.height, "1280x720; one side gives the other");
+  command
+      ->add_option(
+          "--camera", options.camera,
+          "Camera of the scene by its name or its number from 1 on, or \"all\" [the first; "
+          "without cameras the whole scene is in view]")
       ->type_name("NAME");
+  auto* const turntable =
+      command
+          ->add_option("--turntable", options.turntable,
+                       "Number of frames of one turn of the camera around the scene")
+          ->check(CLI::Range(1, 100000));
   command->add_option("--samples", options.samples, "Samples per pixel [accumulation.max_samples]")
       ->check(CLI::Range(1u, protocol::max_samples_per_pixel));
   command
@@ -94,7 +110,8 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options) {
       ->add_option("--frames", options.frames,
                    "Number of frames of the clip, in numbered files [1], or of frames to "
                    "measure for --timings [16]")
-      ->check(CLI::Range(1, 100000));
+      ->check(CLI::Range(1, 100000))
+      ->excludes(turntable);
   add_device_options(*command, options.device);
   add_shader_option(*command, options.device);
   command->footer(render_examples);
@@ -122,8 +139,8 @@ CLI::App* add_health(CLI::App& app, HealthOptions& options) {
       app.add_subcommand("health", "Query whether a running server is ready; exits with 0 or 1");
   command
       ->add_option("--url", options.url,
-                   "Address to query [that of \"heliograph serve\" with the same environment "
-                   "and --config]")
+                   "Address to query, without a path its /health/ready [that of \"heliograph "
+                   "serve\" with the same environment and --config]")
       ->envname("HELIOGRAPH_HEALTH_URL");
   command
       ->add_option("--tls-ca", options.authorities,
@@ -134,23 +151,45 @@ CLI::App* add_health(CLI::App& app, HealthOptions& options) {
   return command;
 }
 
-/// "; did you mean --port?" for an unknown argument.
-std::string hint(const CLI::App& app, const CLI::App* command) {
+std::vector<std::string> option_names(const CLI::App& app, const CLI::App* command) {
   std::vector<std::string> names;
   for (const CLI::App* level : {&app, command}) {
     if (!level) continue;
-    for (const CLI::Option* option : level->get_options()) names.push_back(option->get_name());
+    for (const CLI::Option* option : level->get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
   }
-  if (!command) {
-    for (const CLI::App* sub : app.get_subcommands({})) names.push_back(sub->get_name());
+  return names;
+}
+
+std::vector<std::string> command_names(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  return names;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+/// "unknown option --widht; did you mean --width?" where that is what is wrong; otherwise empty.
+std::string unknown_argument(const CLI::App& app, const CLI::App* command) {
+  const std::vector<std::string> remaining = app.remaining(true);
+  const auto unknown = [](std::string what, const std::string& name,
+                          const std::vector<std::string>& known) {
+    return what + " " + name + protocol::suggestion(name, {known.begin(), known.end()});
+  };
+  for (const std::string& argument : remaining) {
+    if (argument.size() < 2 || argument[0] != '-') continue;
+    return unknown("unknown option", argument.substr(0, argument.find('=')),
+                   option_names(app, command));
   }
-  const std::vector<std::string_view> candidates(names.begin(), names.end());
-  for (const std::string& argument : app.remaining(true)) {
-    const std::string name = argument.substr(0, argument.find('='));
-    const std::string found = protocol::suggestion(name, candidates);
-    if (!found.empty()) return found;
-  }
-  return {};
+  if (command) return remaining.empty() ? "" : "unexpected argument " + remaining.front();
+  const std::vector<std::string> commands = command_names(app);
+  if (remaining.empty()) return "a command is missing: " + joined(commands);
+  return unknown("unknown command", remaining.front(), commands);
 }
 
 /// "heliograph.toml: " for an error about an option from that file. CLI11 names options only in the
@@ -175,8 +214,9 @@ int report(const CLI::App& app, const CLI::App* command, const OptionSources* so
     return app.exit(error, std::cout, std::cerr);
   }
   const std::string help = command ? "heliograph " + command->get_name() : "heliograph";
-  std::cerr << "heliograph: " << location_of(command, sources, error.what()) << error.what()
-            << hint(app, command) << " (" << help << " --help lists the options)\n";
+  std::string what = unknown_argument(app, command);
+  if (what.empty()) what = location_of(command, sources, error.what()) + error.what();
+  std::cerr << "heliograph: " << what << " (" << help << " --help lists the options)\n";
   return wrong_usage;
 }
 

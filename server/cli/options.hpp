@@ -68,11 +68,13 @@ struct ServeOptions {
 };
 
 struct RenderOptions {
-  std::filesystem::path scene;
-  std::filesystem::path output;
-  std::uint32_t width = 1280;
-  std::uint32_t height = 720;
-  std::string camera;
+  std::vector<std::filesystem::path> scenes;
+  std::string output;                  // see OutputName
+  std::string format;                  // empty: by the extension of the output
+  std::optional<std::uint32_t> width;  // absent: see frame_size()
+  std::optional<std::uint32_t> height;
+  std::string camera;                      // name or number; empty: the first; "all"
+  std::optional<std::uint32_t> turntable;  // frames of one turn
   std::optional<std::uint32_t> samples;
   scene::ImportLimits limits;
   std::string reference;  // reference.scope; empty: no path tracing

@@ -1,211 +1,130 @@
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <cstdio>
-#include <fstream>
-#include <map>
-#include <memory>
-#include <nlohmann/json.hpp>
+#include <cstring>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "cli/commands.hpp"
 #include "cli/engine_options.hpp"
-#include "protocol/json/suggestions.hpp"
-#include "protocol/limits.hpp"
-#include "scene/animation/pose.hpp"
-#include "scene/camera.hpp"
-#include "scene/environment.hpp"
+#include "cli/log.hpp"
+#include "cli/render_scene.hpp"
+#include "render/api/buffer_names.hpp"
 #include "scene/import.hpp"
-#include "session/library/environment_source.hpp"
-#include "session/rendering/capture_content.hpp"
 
 namespace heliograph::cli {
 namespace {
 
-constexpr int warm_up_frames = 3;
-constexpr std::uint32_t measured_frames = 16;
+constexpr int some_failed = 3;
 
-scene::Environment choose_environment(const RenderOptions& options) {
-  if (!options.environment.empty()) return scene::load_environment(options.environment);
-  const auto beside = session::environment_beside(options.scene, options.scene.parent_path());
-  return beside ? scene::load_environment(*beside) : scene::constant_environment(glm::vec3(1.0f));
-}
-
-scene::Camera choose_camera(const scene::Scene& scene, const RenderOptions& options) {
-  std::vector<std::string_view> names;
-  for (const scene::Camera& camera : scene.cameras) {
-    if (options.camera.empty() || camera.name == options.camera) return camera;
-    names.push_back(camera.name);
+protocol::ImageFormat format_of(const RenderOptions& options, const OutputName& output) {
+  std::string name = options.format;
+  if (name.empty() && output.is_standard_output()) name = "png";
+  if (name.empty()) {
+    const std::string extension = output.extension();
+    name = extension.substr(std::min<std::size_t>(extension.size(), 1));
   }
-  if (!options.camera.empty()) {
-    throw std::runtime_error("--camera: the scene has no camera " + options.camera +
-                             protocol::suggestion(options.camera, names));
+  if (name == "jpg") return protocol::ImageFormat::jpeg;
+  if (const auto format = protocol::enum_value<protocol::ImageFormat>(name)) return *format;
+  throw std::invalid_argument("--output: must be a .png, .jpg, .exr or .npy file, not " +
+                              options.output);
+}
+
+protocol::Settings settings_of(const RenderOptions& options) {
+  protocol::Settings settings = parse_settings(options.settings);
+  if (!options.reference.empty()) {
+    settings.reference.use = protocol::ReferenceUse::always;
+    settings.reference.scope = options.reference == "full" ? protocol::ReferenceScope::full
+                                                           : protocol::ReferenceScope::same_paths;
   }
-  const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
-  return scene::fit_camera(scene.bounds, scene::Camera().vertical_fov, aspect);
+  if (options.samples) settings.accumulation.max_samples = static_cast<int>(*options.samples);
+  return settings;
 }
 
-template <class Value>
-Value accepted(protocol::Result<Value> result) {
-  if (!result) throw std::runtime_error(result.error().message);
-  return *std::move(result);
-}
-
-void accept(const protocol::Result<void>& result) {
-  if (!result) throw std::runtime_error(result.error().message);
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-/// Times of many frames, pass by pass in the order of the frame.
-class Timings {
- public:
-  void add(const render::Frame& frame) {
-    frame_ms_.push_back(frame.milliseconds);
-    for (const render::PassTime& pass : frame.passes) {
-      auto& times = passes_[pass.name];
-      if (times.empty()) order_.push_back({pass.name, pass.kind});
-      times.push_back(pass.milliseconds);
+/// The name of the files, which tells all images apart.
+OutputName output_of(const RenderOptions& options) {
+  OutputName output(options.output);
+  const bool frames = options.turntable.has_value() ||
+                      (!options.clip.empty() && options.frames.value_or(1) > 1 && !options.timings);
+  const bool cameras = options.camera == "all";
+  if (output.is_standard_output()) {
+    if (options.timings) throw std::invalid_argument("--timings prints to standard output, too");
+    if (frames || cameras || options.scenes.size() > 1) {
+      throw std::invalid_argument("--output: standard output takes one image only");
     }
+    return output;
   }
-
-  nlohmann::json json() const {
-    nlohmann::json passes = nlohmann::json::array();
-    for (const auto& [name, kind] : order_) {
-      passes.push_back(
-          {{"name", name}, {"kind", protocol::enum_name(kind)}, {"ms", median(passes_.at(name))}});
-    }
-    return {{"frames", frame_ms_.size()}, {"frame_ms", median(frame_ms_)}, {"passes", passes}};
+  if (options.scenes.size() > 1 && !output.has_scene()) {
+    throw std::invalid_argument(
+        "--output: several scenes need {scene} in the name, such as {scene}.png");
   }
+  if (cameras && !output.has_camera()) {
+    throw std::invalid_argument(
+        "--output: --camera all needs {camera} in the name, such as {scene}_{camera}.png");
+  }
+  if (frames && !output.has_frame()) output.add_frame();
+  return output;
+}
 
- private:
-  struct Pass {
-    std::string name;
-    protocol::PassKind kind;
+void check_folder(const std::filesystem::path& folder) {
+  const auto refuse = [&](const std::string& why) {
+    throw std::runtime_error("--output: cannot write into " + folder.string() + ": " + why);
   };
-  std::vector<double> frame_ms_;
-  std::vector<Pass> order_;
-  std::map<std::string, std::vector<double>> passes_;
-};
-
-void choose_reference(protocol::Settings& settings, const std::string& scope) {
-  settings.reference.use = protocol::ReferenceUse::always;
-  settings.reference.scope =
-      scope == "full" ? protocol::ReferenceScope::full : protocol::ReferenceScope::same_paths;
+  std::error_code ignored;
+  if (!std::filesystem::is_directory(folder, ignored)) refuse("there is no such folder");
+  if (access(folder.c_str(), W_OK | X_OK) != 0) refuse(std::strerror(errno));
 }
 
-/// The median times of frames that never converge, as one line of JSON.
-void print_timings(render::Engine& engine, render::Renderer& renderer,
-                   const protocol::Settings& settings, const RenderOptions& options) {
-  protocol::Settings endless = settings;
-  endless.accumulation.max_samples = protocol::max_samples_per_pixel;
-  accept(renderer.set_settings(endless));
-  for (int i = 0; i < warm_up_frames; ++i) renderer.render();
-  Timings timings;
-  const std::uint32_t frames = options.frames.value_or(measured_frames);
-  for (std::uint32_t i = 0; i < frames; ++i) timings.add(renderer.render());
-  nlohmann::json line = timings.json();
-  line["scene"] = options.scene.filename().string();
-  line["device"] = engine.device().name;
-  line["tracer"] = protocol::enum_name(engine.tracer());
-  line["width"] = options.width;
-  line["height"] = options.height;
-  std::printf("%s\n", line.dump().c_str());
-}
-
-/// The format by the extension of the file.
-protocol::ImageFormat format_of(const std::filesystem::path& file) {
-  const std::string extension = file.extension().string();
-  if (extension == ".jpg") return protocol::ImageFormat::jpeg;
-  if (const auto format = protocol::enum_value<protocol::ImageFormat>(
-          extension.substr(std::min<std::size_t>(extension.size(), 1)))) {
-    return *format;
+void check_combination(const RenderOptions& options) {
+  if (options.frames && options.clip.empty() && !options.timings) {
+    throw std::invalid_argument("--frames: needs --clip, or --timings; --turntable has its own");
   }
-  throw std::runtime_error("--output: must be a .png, .jpg, .exr or .npy file, not " +
-                           file.string());
 }
 
-session::CaptureContent render_image(render::Renderer& renderer, const RenderOptions& options,
-                                     protocol::ImageFormat format) {
-  std::uint32_t samples = 0;
-  bool converged = false;
-  while (!converged && samples < options.samples.value_or(protocol::max_samples_per_pixel)) {
-    const render::Frame frame = renderer.render();
-    samples = frame.samples;
-    converged = frame.converged;
+std::shared_ptr<const scene::Environment> environment_of(const RenderOptions& options) {
+  if (options.environment.empty()) return nullptr;
+  try {
+    return std::make_shared<const scene::Environment>(scene::load_environment(options.environment));
+  } catch (const scene::ImportError& failure) {
+    throw std::runtime_error(options.environment + ": " + failure.what());
   }
-  return accepted(session::read_content(renderer, options.buffer, format));
 }
 
-void write_file(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes) {
-  std::ofstream file(path, std::ios::binary);
-  file.write(reinterpret_cast<const char*>(bytes.data()),
-             static_cast<std::streamsize>(bytes.size()));
-  file.close();
-  if (!file) throw std::runtime_error("cannot write " + path.string());
-}
-
-/// The camera at a time of the clip, if the clip animates it.
-scene::Camera camera_in_clip(const scene::Scene& scene, const scene::Camera& camera,
-                             const std::string& clip_name, double seconds) {
-  const scene::Clip* const clip = scene::find_clip(scene, clip_name);
-  if (!clip || !scene::carries(scene, *clip, camera)) return camera;
-  scene::Pose pose = scene::rest_pose(scene);
-  scene::evaluate(scene, *clip, seconds, pose);
-  return scene::camera_at(scene, camera, pose);
-}
-
-/// "run.png" -> "run_0007.png"
-std::filesystem::path numbered(const std::filesystem::path& path, std::uint32_t number) {
-  std::string digits = std::to_string(number);
-  digits.insert(0, 4 - std::min<std::size_t>(digits.size(), 4), '0');
-  std::filesystem::path result = path;
-  return result.replace_filename(path.stem().string() + "_" + digits + path.extension().string());
+RenderJob make_job(const RenderOptions& options) {
+  check_combination(options);
+  const OutputName output = output_of(options);
+  const protocol::ImageFormat format = format_of(options, output);
+  if (!output.is_standard_output()) check_folder(output.folder());
+  const auto named = render::check_buffer_name(options.buffer, "--buffer");
+  if (!named) throw std::invalid_argument(named.error().message);
+  return {.options = options,
+          .output = output,
+          .format = format,
+          .settings = settings_of(options),
+          .environment = environment_of(options)};
 }
 
 }  // namespace
 
 int run(const RenderOptions& options) {
-  const protocol::ImageFormat format = format_of(options.output);
-  protocol::Settings settings = parse_settings(options.settings);
-  if (!options.reference.empty()) choose_reference(settings, options.reference);
-  if (options.samples) settings.accumulation.max_samples = static_cast<int>(*options.samples);
-  auto imported = std::make_unique<scene::Scene>(scene::import_gltf(options.scene, options.limits));
-  auto environment = std::make_shared<const scene::Environment>(choose_environment(options));
-  const scene::Camera camera = choose_camera(*imported, options);
-
-  render::Engine engine(engine_options(options.device));
-  if (const std::string error = engine.shader_error(); !error.empty()) {
-    throw std::runtime_error(error);
+  set_up_log({.level = "warning"});  // standard output may be an image
+  RenderJob job = make_job(options);
+  std::size_t failed = 0;
+  for (const std::filesystem::path& scene : options.scenes) {
+    try {
+      render_scene(job, scene);
+    } catch (const std::exception& failure) {
+      std::fprintf(stderr, "heliograph: %s: %s\n", scene.c_str(), failure.what());
+      ++failed;
+    }
   }
-  render::Renderer renderer(engine);
-  const auto resources = engine.upload_and_free_pixels(std::move(imported), std::move(environment));
-  const std::shared_ptr<const scene::Scene>& scene = render::scene_of(*resources);
-  renderer.set_scene(resources);
-  renderer.set_size(options.width, options.height);
-  renderer.set_camera(camera);
-  accept(renderer.set_settings(settings));
-  if (options.timings) {
-    print_timings(engine, renderer, settings, options);
-    // Start again without history, so that the file does not depend on --timings.
-    renderer.set_scene(resources);
-    accept(renderer.set_settings(settings));
+  if (failed == 0) return 0;
+  if (options.scenes.size() > 1) {
+    std::fprintf(stderr, "heliograph: %zu of %zu scenes failed\n", failed, options.scenes.size());
   }
-  renderer.set_frame_seconds(static_cast<float>(1.0 / options.fps));
-  const std::uint32_t frames = options.timings ? 1 : options.frames.value_or(1);
-  for (std::uint32_t i = 0; i < frames; ++i) {
-    const double seconds = options.time + i / options.fps;
-    accept(renderer.set_pose(options.clip, seconds));
-    renderer.set_camera(camera_in_clip(*scene, camera, options.clip, seconds));
-    const session::CaptureContent image = render_image(renderer, options, format);
-    write_file(frames == 1 ? options.output : numbered(options.output, i),
-               session::encode_content(image, format));
-  }
-  return 0;
+  return failed == options.scenes.size() ? 1 : some_failed;
 }
 
 }  // namespace heliograph::cli

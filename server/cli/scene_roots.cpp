@@ -24,7 +24,8 @@ std::vector<fs::path> choose_scene_roots(const std::vector<fs::path>& given) {
   return {};
 }
 
-std::string choose_scene(const session::SceneCatalogue& catalogue, const std::string& requested) {
+std::optional<std::string> choose_scene(const session::SceneCatalogue& catalogue,
+                                        const std::string& requested) {
   if (!requested.empty()) {
     const auto found = catalogue.find(requested);
     if (!found) {
@@ -35,11 +36,7 @@ std::string choose_scene(const session::SceneCatalogue& catalogue, const std::st
     return found->name;
   }
   const std::vector<session::CatalogueEntry> scenes = catalogue.list();
-  if (scenes.empty()) {
-    throw std::runtime_error(
-        "no scene found: generate the demo scene with \"heliograph-scenes FOLDER\" and start "
-        "with --scene-root FOLDER");
-  }
+  if (scenes.empty()) return std::nullopt;
   for (const session::CatalogueEntry& scene : scenes) {
     if (scene.name == demo_scene) return scene.name;
   }

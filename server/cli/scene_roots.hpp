@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,8 +14,9 @@ namespace heliograph::cli {
 std::vector<std::filesystem::path> choose_scene_roots(
     const std::vector<std::filesystem::path>& given);
 
-/// `requested`; otherwise the demo scene, otherwise the first scene.
-/// @throws std::runtime_error if there is no such scene, or no scene at all
-std::string choose_scene(const session::SceneCatalogue& catalogue, const std::string& requested);
+/// `requested`; otherwise the demo scene, otherwise the first scene, otherwise nothing.
+/// @throws std::runtime_error if there is no such scene
+std::optional<std::string> choose_scene(const session::SceneCatalogue& catalogue,
+                                        const std::string& requested);
 
 }  // namespace heliograph::cli

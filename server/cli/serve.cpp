@@ -124,6 +124,13 @@ std::unique_ptr<session::UploadStore> upload_store(const ServeOptions& options) 
                              .import_limits = options.limits});
 }
 
+std::string how_to_bring_a_scene(const std::vector<std::filesystem::path>& roots, bool uploads) {
+  std::string text = roots.empty() ? "start with --scene-root FOLDER"
+                                   : "put .glb or .gltf files into " + roots.front().string();
+  if (uploads) text += ", upload one with PUT /api/v1/scenes/NAME";
+  return text + ", or make the demo scene with \"heliograph-scenes FOLDER\"";
+}
+
 /// Why the first scene could not be loaded. Written by the loading thread, read after it.
 class StartFailure {
  public:
@@ -168,16 +175,19 @@ int run(const ServeOptions& options) {
     hosting.scene_roots.push_back(uploads->scenes());
     hosting.max_upload_bytes = uploads->max_bytes();
   }
-  const std::string scene =
+  const std::optional<std::string> scene =
       choose_scene(session::SceneCatalogue(hosting.scene_roots), options.scene);
+  hosting.session.starts_empty = !scene;
+  net::ServerOptions serving = server_options(options);
+  net::check_server_options(serving);
 
-  render::Engine engine(engine_options(options.device));
+  const std::unique_ptr<render::Engine> made = make_engine(options.device);
+  render::Engine& engine = *made;
   spdlog::info("rendering on {} ({}), ray tracer {}", engine.device().name, engine.device().driver,
                protocol::enum_name(engine.tracer()));
   set_mmap_threshold(engine.device());
   if (!options.width && !options.height) set_default_size(hosting.session, engine.device());
   session::SessionHost host(engine, hosting);
-  net::ServerOptions serving = server_options(options);
   if (uploads) serving.router.uploads = uploads->scenes();
   net::Server server(host, serving, uploads.get());
 
@@ -188,14 +198,19 @@ int run(const ServeOptions& options) {
   });
   StartFailure failure;
   const HostStop stop_first(host, uploads.get());
-  host.load_scene(host.sessions().main(), {.name = scene}, {},
-                  [&](const protocol::Result<protocol::SceneInfo>& loaded) {
-                    // Clients may load another scene before the first is loaded, or cancel it.
-                    const auto conflict = protocol::ErrorCode::conflict;
-                    if (loaded || loaded.error().code == conflict) return;
-                    failure.set(scene + ": " + loaded.error().message);
-                    server.stop();
-                  });
+  if (scene) {
+    host.load_scene(host.sessions().main(), {.name = *scene}, {},
+                    [&](const protocol::Result<protocol::SceneInfo>& loaded) {
+                      // Clients may load another scene before the first is loaded, or cancel it.
+                      const auto conflict = protocol::ErrorCode::conflict;
+                      if (loaded || loaded.error().code == conflict) return;
+                      failure.set(*scene + ": " + loaded.error().message);
+                      server.stop();
+                    });
+  } else {
+    spdlog::warn("no scene found: {}",
+                 how_to_bring_a_scene(hosting.scene_roots, uploads != nullptr));
+  }
   server.run();
   if (const auto reason = failure.get()) throw std::runtime_error(*reason);
   return 0;

@@ -41,6 +41,14 @@ std::unique_ptr<TlsCertificate> certificate(const ServerOptions& options) {
 
 }  // namespace
 
+void check_server_options(const ServerOptions& options) {
+  const AccessControl access(options.access);
+  certificate(options);
+  asio::io_context io;
+  const Listener main(io, options.access.bind_address, options.port, {});
+  if (options.metrics) Listener(io, options.metrics->address, options.metrics->port, {});
+}
+
 struct Server::State {
   State(session::SessionHost& host, const ServerOptions& settings, session::UploadStore* uploads)
       : options(settings),

@@ -37,6 +37,10 @@ struct ServerOptions {
   std::chrono::milliseconds drain_deadline{5000};
 };
 
+/// Whether a server could start with these options now: certificates, tokens, origins and ports.
+/// @throws std::runtime_error, std::invalid_argument
+void check_server_options(const ServerOptions& options);
+
 /// Listens for HTTP and WebSocket clients and serves them on the thread that calls `run`.
 class Server {
  public:

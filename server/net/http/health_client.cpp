@@ -41,7 +41,7 @@ std::optional<Address> parse_url(std::string_view url) {
                   .port = secure ? "443" : "80",
                   .target = std::string(url.substr(slash)),
                   .secure = secure};
-  if (address.target.empty()) address.target = "/";
+  if (address.target.empty() || address.target == "/") address.target = "/health/ready";
   const std::size_t colon = authority.rfind(':');
   const std::size_t bracket = authority.rfind(']');
   const bool has_port =

@@ -3,7 +3,9 @@
 import asyncio
 import os
 import shutil
+import subprocess
 import tempfile
+import time
 import unittest
 
 from harness.gltf import document, grid, write_glb
@@ -109,6 +111,38 @@ class DeviceLoss(ServerTestCase):
             self.server.wait_for(self.ready, "the recovery", timeout=60)
             await viewer.rest()
         self.assertIn("recovery in ", self.server.log_text())
+
+
+class LossAtTheStart(unittest.TestCase):
+    """The device is lost while its programs and tables are made."""
+
+    def test_it_is_set_up_again(self):
+        with tempfile.TemporaryDirectory() as folder:
+            fault = os.path.join(folder, "lose")
+            with open(fault, "w", encoding="ascii"):
+                pass
+            with Server(environment={"HELIOGRAPH_TEST_DEVICE_LOSS": fault}) as server:
+                self.assertFalse(os.path.exists(fault), "the device was not lost")
+                self.assertIn("lost while it was set up; trying again", server.log_text())
+                self.assertEqual(server.get("/health/ready")[0], 200)
+
+    def test_repeated_losses_end_with_one_sentence(self):
+        with tempfile.TemporaryDirectory() as folder:
+            fault = os.path.join(folder, "lose")
+            process = subprocess.Popen(
+                [os.environ["HELIOGRAPH_BINARY"], "serve", "--port", "0", "--scene-root",
+                 os.environ["HELIOGRAPH_SCENES"]], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                text=True, env={**os.environ, "HELIOGRAPH_TEST_DEVICE_LOSS": fault})
+            deadline = time.monotonic() + 60
+            while process.poll() is None and time.monotonic() < deadline:
+                with open(fault, "a", encoding="ascii"):
+                    pass
+                time.sleep(0.001)
+            out, err = process.communicate(timeout=10)
+            self.assertEqual((process.returncode, out), (1, ""), err)
+            told = [line for line in err.splitlines() if line.startswith("heliograph: ")]
+            self.assertEqual(len(told), 1, err)
+            self.assertIn("the graphics device was lost 3 times while it was set up", told[0])
 
 
 class LossBeforeTheFirstFrame(unittest.TestCase):

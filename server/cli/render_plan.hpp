@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cli/options.hpp"
+#include "scene/scene.hpp"
+
+namespace heliograph::cli {
+
+struct FrameSize {
+  std::uint32_t width = 1280;
+  std::uint32_t height = 720;
+};
+
+/// The size that the options ask for: one side gives the other by the default's aspect.
+FrameSize frame_size(const RenderOptions& options);
+
+/// One image of a scene.
+struct Shot {
+  scene::Camera camera;
+  double seconds = 0.0;     // into the clip
+  std::uint32_t frame = 0;  // in the file's name
+  bool cut = false;         // another view than that of the shot before: no history applies
+};
+
+/// The images of a scene, in the order in which they are rendered.
+/// @throws std::runtime_error where the scene lacks what the options name
+std::vector<Shot> plan_shots(const scene::Scene& scene, const RenderOptions& options);
+
+/// One sentence for the user on frames that lie beyond the end of the clip; empty: there are none.
+std::string note_on_clip(const scene::Scene& scene, const RenderOptions& options);
+
+}  // namespace heliograph::cli
