@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -41,6 +42,8 @@ struct MethodCodec {
   /// Ignores unknown members. A missing, ill-typed or out-of-range member gives
   /// ErrorCode::invalid_params with its path ("cameras[2].eye"), the reason and the limit.
   static Result<typename Method::Params> read_params(const RawJson& json);
+  /// A sentence about each of the ignored members; the first few of them.
+  static std::vector<std::string> unknown_params(const RawJson& json);
   static RawJson write_result(const typename Method::Result& result);
   static Result<void> check_params(const RawJson& json);
   static Result<void> check_result(const RawJson& json);

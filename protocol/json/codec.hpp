@@ -134,17 +134,35 @@ Result<void> read_field(const json& in, Owner& out, const Field<Owner, Member>& 
   return error::invalid(path, "is required");
 }
 
-template <StrictMessage T>
-Result<void> check_members(const json& in, const std::string& path) {
-  const std::vector<std::string_view> names = std::apply(
+template <Message T>
+std::vector<std::string_view> member_names() {
+  return std::apply(
       [](const auto&... fields) { return std::vector<std::string_view>{fields.name...}; },
       T::fields());
+}
+
+template <StrictMessage T>
+Result<void> check_members(const json& in, const std::string& path) {
+  const std::vector<std::string_view> names = member_names<T>();
   for (const auto& [name, value] : in.items()) {
     if (std::find(names.begin(), names.end(), name) != names.end()) continue;
     return error::invalid(path.empty() ? name : path + "." + name,
                           "is not a member" + suggestion(name, names), choices_text(names));
   }
   return {};
+}
+
+/// Members of an object that are not among `names`, one sentence each; the first few of them.
+inline std::vector<std::string> unknown_names(const json& in,
+                                              const std::vector<std::string_view>& names) {
+  constexpr std::size_t most = 8;
+  std::vector<std::string> unknown;
+  for (const auto& [name, value] : in.items()) {
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    if (unknown.size() == most) break;
+    unknown.push_back(name + ": is not a parameter" + suggestion(name, names));
+  }
+  return unknown;
 }
 
 template <Message T>
@@ -348,6 +366,11 @@ RawJson schema_of() {
 template <class Method>
 Result<typename Method::Params> MethodCodec<Method>::read_params(const RawJson& json) {
   return decode<typename Method::Params>(json);
+}
+
+template <class Method>
+std::vector<std::string> MethodCodec<Method>::unknown_params(const RawJson& json) {
+  return codec::unknown_names(json.value(), codec::member_names<typename Method::Params>());
 }
 
 template <class Method>

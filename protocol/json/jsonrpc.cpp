@@ -95,6 +95,13 @@ bool valid_id(const json& request) {
 
 }  // namespace
 
+RawJson with_warnings(RawJson result, const std::vector<std::string>& warnings) {
+  if (warnings.empty() || !result.value().is_object()) return result;
+  json warned = result.value();
+  warned["warnings"] = warnings;
+  return RawJson(std::move(warned));
+}
+
 std::string error_answer(const RawJson& id, const Error& error) {
   json data{{"path", error.path}, {"reason", error.reason}};
   if (!error.limit.empty()) data["limit"] = error.limit;

@@ -7,6 +7,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "protocol/json/pending_answer.hpp"
@@ -32,6 +33,9 @@ using Completion = std::function<void(Result<Response>)>;
 
 template <class Request, class Response>
 using Handler = std::function<void(Request, const CallContext&, Completion<Response>)>;
+
+/// The result of a call with the member `warnings`, if there are any.
+RawJson with_warnings(RawJson result, const std::vector<std::string>& warnings);
 
 /// The response text of an error; `id` is null where the id of the call could not be read.
 std::string error_answer(const RawJson& id, const Error& error);
@@ -104,9 +108,13 @@ void Dispatcher::add(Handler<typename Method::Params, typename Method::Result> h
     Result<typename Method::Params> params = MethodCodec<Method>::read_params(json);
     if (!params) return done(std::move(params).error());
     handler(*std::move(params), context,
-            [done = std::move(done)](Result<typename Method::Result> result) {
+            [done = std::move(done), warnings = MethodCodec<Method>::unknown_params(json)](
+                Result<typename Method::Result> result) {
               if (!result) return done(std::move(result).error());
-              done(MethodCodec<Method>::write_result(*result));
+              RawJson written = MethodCodec<Method>::write_result(*result);
+              // A document is not the server's to add to.
+              constexpr bool document = std::is_same_v<typename Method::Result, RawJson>;
+              done(document ? written : with_warnings(std::move(written), warnings));
             });
   });
 }

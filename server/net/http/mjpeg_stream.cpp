@@ -10,6 +10,7 @@
 
 #include "net/connection.hpp"
 #include "net/http/beast_messages.hpp"
+#include "net/http/image_request.hpp"
 #include "net/tcp_progress.hpp"
 #include "protocol/messages/messages.hpp"
 #include "session/event_log.hpp"
@@ -224,6 +225,8 @@ class MjpegStream : public Connection,
 }  // namespace
 
 protocol::Result<protocol::StreamConfigure> mjpeg_stream_options(const HttpRequest& request) {
+  const auto known = check_parameters(request, {"quality", "max_fps"});
+  if (!known) return known.error();
   const auto quality =
       number_parameter(request, "quality", protocol::min_quality, protocol::max_quality);
   if (!quality) return quality.error();

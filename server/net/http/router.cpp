@@ -1,12 +1,11 @@
 #include "net/http/router.hpp"
 
-#include <array>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
-#include "protocol/limits.hpp"
+#include "net/http/image_request.hpp"
 #include "protocol/settings/settings_json.hpp"
 #include "web_client/embedded_assets.hpp"
 
@@ -55,34 +54,14 @@ HttpResponse schema() {
   return json_response(document.dump());
 }
 
-struct ImageKind {
-  std::string_view extension;
-  protocol::ImageFormat format;
-  std::string_view content_type;
-};
-
-constexpr std::array image_kinds{
-    ImageKind{"png", protocol::ImageFormat::png, "image/png"},
-    ImageKind{"jpg", protocol::ImageFormat::jpeg, "image/jpeg"},
-    ImageKind{"npy", protocol::ImageFormat::npy, "application/x-npy"},
-    ImageKind{"exr", protocol::ImageFormat::exr, "image/x-exr"},
-};
-
-const ImageKind* image_kind(std::string_view extension) {
-  for (const ImageKind& kind : image_kinds) {
-    if (kind.extension == extension) return &kind;
-  }
-  return nullptr;
-}
-
 /// "main/frame.jpg" -> main, jpg
-std::optional<std::pair<std::string_view, std::string_view>> image_address(std::string_view path) {
+std::optional<ImageAddress> image_address(std::string_view path) {
   if (!path.starts_with(sessions_prefix)) return std::nullopt;
   path.remove_prefix(sessions_prefix.size());
   constexpr std::string_view file = "/frame.";
   const std::size_t split = path.find(file);
   if (split == std::string_view::npos) return std::nullopt;
-  return std::pair{path.substr(0, split), path.substr(split + file.size())};
+  return ImageAddress{path.substr(0, split), path.substr(split + file.size())};
 }
 
 /// The value of frame-ancestors. @throws std::invalid_argument
@@ -176,7 +155,7 @@ void Router::handle(const HttpRequest& request, const Pending& pending, Reply re
     return reply(method_not_allowed("GET"));
   }
   if (const auto address = image_address(request.path)) {
-    return image(request, address->first, address->second, pending, std::move(reply));
+    return image(request, *address, admission.role, pending, std::move(reply));
   }
   reply(answer_get(request));
 }
@@ -238,30 +217,30 @@ void Router::call(const HttpRequest& request, Role role, const Pending& pending,
   });
 }
 
-void Router::image(const HttpRequest& request, std::string_view session, std::string_view extension,
+void Router::image(const HttpRequest& request, const ImageAddress& address, Role role,
                    const Pending& pending, Reply reply) const {
-  const auto found = host_.sessions().find(session);
+  const auto found = host_.sessions().find(address.session);
   if (!found) return reply(error_response(found.error()));
-  const ImageKind* const kind = image_kind(extension);
+  const ImageKind* const kind = image_kind(address.extension);
   if (!kind) {
     return reply(text_response(404, "Images are frame.jpg, frame.png, frame.exr and frame.npy."));
   }
-  session::CaptureRequest capture;
-  capture.format = kind->format;
-  capture.answer = pending;
-  capture.buffer = request.parameter("buffer").value_or("output");
-  const auto samples = number_parameter(request, "samples", 1, protocol::max_samples_per_pixel);
-  if (!samples) return reply(error_response(samples.error()));
-  capture.samples = *samples;
-  capture.done = [reply, kind](protocol::Result<session::Capture> result) {
+  auto asked = read_image_request(request, (*found)->limits());
+  if (!asked) return reply(error_response(asked.error()));
+  if (role != Role::control && !asked->view.as_shown()) {
+    return reply(text_response(403, "This token is read-only: images show what viewers see."));
+  }
+  asked->capture.format = kind->format;
+  asked->capture.answer = pending;
+  asked->capture.done = [reply, kind](protocol::Result<session::Capture> result) {
     if (!result) return reply(error_response(result.error()));
     reply({.content_type = std::string(kind->content_type),
            .body = {result->file.begin(), result->file.end()},
            .headers = {{"X-Heliograph-Samples", std::to_string(result->samples)}}});
   };
-  if (const auto accepted = (*found)->captures().request_capture(std::move(capture)); !accepted) {
-    reply(error_response(accepted.error()));
-  }
+  const auto accepted =
+      session::request_snapshot(host_, *found, asked->view, std::move(asked->capture));
+  if (!accepted) reply(error_response(accepted.error()));
 }
 
 }  // namespace heliograph::net

@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,12 @@ struct RouterOptions {
   std::vector<std::string> frame_ancestors;  // origins whose pages may embed ours, or 'self'
   bool metrics = true;                       // at /metrics
   std::filesystem::path uploads;  // folder of uploaded scenes; empty: uploads are disabled
+};
+
+/// Of an image of a session: "main/frame.jpg" below the address of sessions.
+struct ImageAddress {
+  std::string_view session;
+  std::string_view extension;
 };
 
 /// Handles everything over HTTP but the WebSocket: the web client, JSON-RPC, single images, the
@@ -51,7 +58,7 @@ class Router {
   std::optional<HttpResponse> health(const HttpRequest& request) const;
   HttpResponse metrics() const;
   void call(const HttpRequest& request, Role role, const Pending& pending, Reply reply) const;
-  void image(const HttpRequest& request, std::string_view session, std::string_view extension,
+  void image(const HttpRequest& request, const ImageAddress& address, Role role,
              const Pending& pending, Reply reply) const;
 
   session::SessionHost& host_;

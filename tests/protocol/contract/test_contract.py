@@ -45,6 +45,32 @@ class Methods(ServerTestCase):
         self.assertEqual(document["openrpc"], self.server.call("rpc.discover"))
         self.assertEqual(document["settings"], self.server.call("settings.schema"))
 
+    def test_the_openrpc_document_has_an_address_of_its_own(self):
+        status, headers, body = self.server.get("/openrpc.json")
+        self.assertEqual((status, headers["content-type"]), (200, "application/json"))
+        self.assertEqual(json.loads(body), self.server.call("rpc.discover"))
+
+    def test_ignored_members_are_told_in_the_result(self):
+        before = self.server.call("camera.get")
+        answer = self.server.call("camera.orbit", {"yew": 3})
+        self.assertEqual(answer["warnings"], ["yew: is not a parameter; did you mean yaw?"])
+        for one, other in zip(answer["eye"], before["eye"]):
+            self.assertAlmostEqual(one, other, places=4)
+        answer = self.server.call("frame.capture", {"sampels": 3, "fromat": "exr", "samples": 1})
+        self.assertEqual(len(answer["warnings"]), 2)
+        self.assertEqual(answer["format"], "png")
+        self.assertNotIn("warnings", self.server.call("camera.orbit", {"yaw": 3}))
+        many = {f"member{i}": None for i in range(1000)}
+        self.assertEqual(len(self.server.call("camera.get", many)["warnings"]), 8)
+        self.assertNotIn("warnings", self.server.call("rpc.discover", {"yew": 3}))
+
+    def test_scene_cameras_are_chosen_by_number_too(self):
+        named = self.server.call("camera.set", {"name": "main"})
+        numbered = self.server.call("camera.set", {"name": "1"})
+        self.assertEqual({**numbered, "rev": 0}, {**named, "rev": 0})
+        for name in ("0", "2", "1x"):
+            self.assert_error(self.server.ask("camera.set", {"name": name}), -32004, path="name")
+
     def test_cameras_are_absolute_and_partial(self):
         before = self.server.call("camera.get")
         moved = self.server.call("camera.set", {"eye": [3, 2, 1]})
