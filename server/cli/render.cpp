@@ -12,7 +12,7 @@
 #include "cli/log.hpp"
 #include "cli/render_scene.hpp"
 #include "render/api/buffer_names.hpp"
-#include "scene/import.hpp"
+#include "scene/environment.hpp"
 
 namespace heliograph::cli {
 namespace {
@@ -85,11 +85,7 @@ void check_combination(const RenderOptions& options) {
 
 std::shared_ptr<const scene::Environment> environment_of(const RenderOptions& options) {
   if (options.environment.empty()) return nullptr;
-  try {
-    return std::make_shared<const scene::Environment>(scene::load_environment(options.environment));
-  } catch (const scene::ImportError& failure) {
-    throw std::runtime_error(options.environment + ": " + failure.what());
-  }
+  return std::make_shared<const scene::Environment>(scene::load_environment(options.environment));
 }
 
 RenderJob make_job(const RenderOptions& options) {

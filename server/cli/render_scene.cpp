@@ -39,14 +39,8 @@ std::shared_ptr<const scene::Environment> environment_of(const RenderJob& job,
                                                          const fs::path& file) {
   if (job.environment) return job.environment;
   const auto beside = session::environment_beside(file, file.parent_path());
-  if (!beside) {
-    return std::make_shared<const scene::Environment>(scene::constant_environment(glm::vec3(1.0f)));
-  }
-  try {
-    return std::make_shared<const scene::Environment>(scene::load_environment(*beside));
-  } catch (const scene::ImportError& failure) {
-    throw std::runtime_error(beside->string() + ": " + failure.what());
-  }
+  return std::make_shared<const scene::Environment>(
+      beside ? scene::load_environment(*beside) : scene::constant_environment(glm::vec3(1.0f)));
 }
 
 /// Whether the file can be written; a file that does not exist does not exist afterwards either.

@@ -204,7 +204,7 @@ int run(const ServeOptions& options) {
                       // Clients may load another scene before the first is loaded, or cancel it.
                       const auto conflict = protocol::ErrorCode::conflict;
                       if (loaded || loaded.error().code == conflict) return;
-                      failure.set(*scene + ": " + loaded.error().message);
+                      failure.set(*scene + ": " + loaded.error().reason);
                       server.stop();
                     });
   } else {

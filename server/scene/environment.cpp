@@ -1,6 +1,7 @@
 #include "scene/environment.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include "scene/confined_folder.hpp"
 #include "scene/image/exr.hpp"
@@ -25,13 +26,14 @@ glm::vec3 physical(const glm::vec3& radiance) {
 
 Environment load_environment(const std::filesystem::path& path) {
   constexpr std::uint64_t max_bytes = 512ull << 20;
-  const std::vector<std::uint8_t> file = read_regular_file(path, max_bytes, "the environment");
+  const std::string what = "the environment " + path.filename().string();
+  const std::vector<std::uint8_t> file = read_regular_file(path, max_bytes, what);
   try {
     Environment environment = is_exr(file) ? decode_exr(file) : decode_radiance(file);
     for (glm::vec3& radiance : environment.radiance) radiance = physical(radiance);
     return environment;
   } catch (const ImportError& error) {
-    throw ImportError(std::string("the environment ") + error.what());
+    throw ImportError(what + " " + error.what());
   }
 }
 

@@ -150,7 +150,11 @@ class CommandLine(unittest.TestCase):
             self.fails("serve", "--scene-root", empty + "/missing", saying="is not a folder")
             with open(empty + "/broken.glb", "wb") as file:
                 file.write(b"nonsense")
-            self.fails("serve", "--scene-root", empty, "--port", "0", saying="broken")
+            self.fails("serve", "--scene-root", empty, "--port", "0",
+                       saying="heliograph: broken: cannot be loaded: not a glTF file")
+        with tempfile.NamedTemporaryFile(suffix=".hdr") as file:
+            self.fails("serve", "--port", "0", *root, "--environment", file.name,
+                       saying="the environment " + os.path.basename(file.name) + " is not")
         self.fails("serve", "--host", "0.0.0.0", *root, saying="--token")
         self.fails("serve", "--host", "0.0.0.0", "--token", "short", *root, saying="8 characters")
         self.fails("serve", "--port", "0", *root, saying="device", environment={
