@@ -1,8 +1,10 @@
 #include "cli/option_groups.hpp"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
+#include "protocol/json/suggestions.hpp"
 #include "protocol/messages/kinds.hpp"
 #include "protocol/settings/presets.hpp"
 
@@ -17,11 +19,23 @@ std::vector<std::string> tracer_names() {
 
 }  // namespace
 
+CLI::Validator one_of(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ",") + name;
+  return CLI::Validator(
+      [names, list](const std::string& value) -> std::string {
+        if (std::find(names.begin(), names.end(), value) != names.end()) return {};
+        return value + " is not one of " + list +
+               protocol::suggestion(value, {names.begin(), names.end()});
+      },
+      "{" + list + "}");
+}
+
 void add_device_options(CLI::App& command, DeviceOptions& options) {
   command.add_option("--device", options.device, "Part of the name of the Vulkan device to use")
       ->group("Device");
   command.add_option("--tracer", options.tracer, "Ray tracer; see \"heliograph devices\"")
-      ->check(CLI::IsMember(tracer_names()))
+      ->check(one_of(tracer_names()))
       ->capture_default_str()
       ->group("Device");
 }
@@ -44,7 +58,7 @@ void add_settings_options(CLI::App& command, SettingsOptions& options) {
   std::vector<std::string> presets;
   for (const protocol::Preset& preset : protocol::presets()) presets.emplace_back(preset.name);
   command.add_option("--preset", options.preset, "Preset of the denoiser; --set is applied on top")
-      ->check(CLI::IsMember(presets))
+      ->check(one_of(presets))
       ->group("Frames");
   command
       .add_option("--set", options.assignments,

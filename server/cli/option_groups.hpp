@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
+#include <vector>
 
 #include "cli/options.hpp"
 #include "protocol/limits.hpp"
@@ -9,6 +10,9 @@
 // Options that several commands share. Includes CLI11: only for the sources of this folder.
 
 namespace heliograph::cli {
+
+/// Accepts one of `names`; for another the error suggests the nearest.
+CLI::Validator one_of(const std::vector<std::string>& names);
 
 void add_device_options(CLI::App& command, DeviceOptions& options);
 void add_shader_option(CLI::App& command, DeviceOptions& options);

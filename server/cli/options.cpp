@@ -70,7 +70,7 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options) {
   command
       ->add_option("--format", options.format,
                    "Format of the files [by their extension; png for -]")
-      ->check(CLI::IsMember({"png", "jpg", "exr", "npy"}));
+      ->check(one_of({"png", "jpg", "exr", "npy"}));
   add_size_options(*command, options.width, options.height, "1280x720; one side gives the other");
   command
       ->add_option(
@@ -88,7 +88,7 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options) {
   command
       ->add_option("--reference", options.reference,
                    "Path trace instead: the hybrid's own light paths (same_paths) or all (full)")
-      ->check(CLI::IsMember({"same_paths", "full"}));
+      ->check(one_of({"same_paths", "full"}));
   add_settings_options(*command, options.settings);
   command->add_option("--buffer", options.buffer, "Buffer to write")->capture_default_str();
   add_environment_option(*command, options.environment);

@@ -182,11 +182,11 @@ void add_scene_options(CLI::App& command, ServeOptions& options) {
 void add_log_options(CLI::App& command, LogOptions& options) {
   constexpr const char* group = "Log";
   command.add_option("--log-format", options.format, "Format of the log on stderr")
-      ->check(CLI::IsMember({"text", "json"}))
+      ->check(one_of({"text", "json"}))
       ->capture_default_str()
       ->group(group);
   command.add_option("--log-level", options.level, "Minimum level of logged messages")
-      ->check(CLI::IsMember({"debug", "info", "warning", "error", "off"}))
+      ->check(one_of({"debug", "info", "warning", "error", "off"}))
       ->capture_default_str()
       ->group(group);
 }

@@ -90,6 +90,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 
   void read() {
     framing_ = {};
+    headers_before_body_.reset();
     parser_.emplace();
     parser_->header_limit(max_request_head_bytes);
     parser_->body_limit(context_.uploads ? context_.uploads->max_bytes() : largest_body());
@@ -145,6 +146,8 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
       return received(http::error::body_limit);
     }
     parser_->body_limit(largest_body());
+    // The parser adds trailers to the headers; they are not for that, RFC 9110 section 6.5.1.
+    if (parser_->chunked()) headers_before_body_ = parser_->get().base();
     send_continue(parser_->get(), [self = shared_from_this()] {
       http::async_read(self->stream_, self->buffer_, *self->parser_,
                        IoHandler([self](error_code failed) { self->received(failed); }));
@@ -246,7 +249,9 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     framing_.keep_alive =
         parser_->keep_alive() && !upgrade && !shutting_down_ && !context_.draining;
     answering_ = true;
-    const HttpRequest request = to_request(parser_->release(), stream_);
+    BeastRequest message = parser_->release();
+    if (headers_before_body_) message.base() = *std::exchange(headers_before_body_, std::nullopt);
+    const HttpRequest request = to_request(std::move(message), stream_);
     if (listener_kind_ == ListenerKind::metrics)
       return send(context_.router.answer_metrics_listener(request));
     framing_.cors = context_.access.cors_headers(request);
@@ -375,6 +380,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   ClientStream stream_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
+  std::optional<BeastRequest::header_type> headers_before_body_;  // where trailers may follow
   std::shared_ptr<session::UploadStore::Incoming> upload_;
   std::optional<http::request_parser<http::file_body>> upload_parser_;
   std::chrono::steady_clock::time_point upload_deadline_;

@@ -117,6 +117,15 @@ class Framing(ServerTestCase):
                 with self.assertRaises(ConnectionError):
                     raw.read_until(b"HTTP/1.1 200")
 
+    def test_trailers_are_no_headers(self):
+        call = b"%x\r\n%s\r\n0\r\n" % (len(CALL), CALL)
+        for trailer in (b"Origin: https://evil.example\r\n", b"Host: evil.example\r\n", b""):
+            with RawSocket(self.server) as raw:
+                raw.send(b"POST /rpc HTTP/1.1\r\nHost: 127.0.0.1\r\nTransfer-Encoding: chunked\r\n"
+                         b"\r\n" + call + trailer + b"\r\n")
+                answer = raw.read_until(b"\r\n\r\n")
+                self.assertTrue(answer.startswith(b"HTTP/1.1 200 "), (trailer, answer))
+
     def test_a_head_may_come_byte_by_byte_and_with_the_next_request(self):
         request = b"GET /health/live HTTP/1.1\r\nHost: 127.0.0.1\r\n\r\n"
         with RawSocket(self.server) as raw:

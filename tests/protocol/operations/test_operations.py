@@ -139,6 +139,7 @@ class CommandLine(unittest.TestCase):
         self.fails("--verson", saying="unknown option --verson; did you mean --version")
         self.fails(saying="a command is missing: serve, render")
         self.fails("devices", "llvmpipe", saying="unexpected argument llvmpipe")
+        self.fails("serve", "--tracer", "embre", saying="not one of auto,.*; did you mean embree")
         self.fails("serve", "--set", "tone_map.curv=agx", saying="did you mean tone_map.curve")
         self.fails("serve", "--set", "exposure.compensation=99", saying="16")
         self.fails("serve", "--scene", "mirorr", "--scene-root", os.environ["HELIOGRAPH_SCENES"],
