@@ -169,13 +169,16 @@ struct SceneProgress {
   std::string name;
   std::string stage;
   double fraction = 0.0;
+  std::string by;
 
   static constexpr auto fields() {
     return std::tuple{
         field("name", &SceneProgress::name, "The scene that is being loaded."),
-        field("stage", &SceneProgress::stage, "Stage of loading."),
+        field("stage", &SceneProgress::stage,
+              "Stage of loading; ready, cancelled or failed at its end."),
         field("fraction", &SceneProgress::fraction, "Fraction of the work that is done.")
             .range(0, 1),
+        field("by", &SceneProgress::by, "The viewer that loads it; empty: the server."),
     };
   }
   bool operator==(const SceneProgress&) const = default;
@@ -183,9 +186,13 @@ struct SceneProgress {
 
 struct SceneChanged {
   SceneInfo scene;
+  std::string by;
 
   static constexpr auto fields() {
-    return std::tuple{field("scene", &SceneChanged::scene, "The scene that was loaded.")};
+    return std::tuple{
+        field("scene", &SceneChanged::scene, "The scene that was loaded."),
+        field("by", &SceneChanged::by, "The viewer that loaded it; empty: the server."),
+    };
   }
   bool operator==(const SceneChanged&) const = default;
 };

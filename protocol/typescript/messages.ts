@@ -824,16 +824,20 @@ export interface AnimationChangedNotification {
 
 /** Parameters of the notification scene.progress. */
 export interface SceneProgress {
+  /** The viewer that loads it; empty: the server. */
+  by: string;
   /** Fraction of the work that is done. */
   fraction: number;
   /** The scene that is being loaded. */
   name: string;
-  /** Stage of loading. */
+  /** Stage of loading; ready, cancelled or failed at its end. */
   stage: string;
 }
 
 /** Parameters of the notification scene.changed. */
 export interface SceneChangedNotification {
+  /** The viewer that loaded it; empty: the server. */
+  by: string;
   /** The scene that was loaded. */
   scene: SceneInfo;
 }
@@ -1062,7 +1066,7 @@ export interface Methods {
   "materials.patch": { params: MaterialsPatchParams; result: MaterialsPatchResult };
   /** Lists the environments that the server has, and returns the current one. */
   "environment.list": { params: Empty; result: EnvironmentState };
-  /** Sets the environment of this session's scene, or rotates it. */
+  /** Sets the environment of this session, which stays with other scenes, or rotates it. */
   "environment.set": { params: EnvironmentSetParams; result: EnvironmentState };
   /** Returns the surface that is visible at a point of the image. */
   "scene.pick": { params: ScenePickParams; result: Pick };

@@ -20,12 +20,11 @@ void SessionScene::show(LoadedScene scene, const std::string& by) {
   core_.scene_info = describe_scene(scene);
   core_.edits = SceneEdits(core_.scene);
   core_.resources = std::move(scene.resources);
-  core_.environment = nullptr;
-  core_.environment_name.reset();
   core_.timeline.reset_clock();
   core_.camera.reset(*core_.scene, core_.aspect());
   core_.changed();
-  core_.notify_others<protocol::notifications::scene_changed>(by, {.scene = core_.scene_info});
+  core_.notify_others<protocol::notifications::scene_changed>(
+      by, {.scene = core_.scene_info, .by = by});
 }
 
 void SessionScene::unload(const std::string& by) {

@@ -135,7 +135,7 @@ class Environment(_Group):
         return self._call("environment.list", {})
 
     def set(self, *, name: Optional[str] = _UNSET, rotation: float = _UNSET) -> Dict[str, Any]:
-        """Sets the environment of this session's scene, or rotates it.
+        """Sets the environment of this session, which stays with other scenes, or rotates it.
 
         name: A name from environment.list; null: the scene's own.
         rotation: Also sets environment.rotation. [degrees]

@@ -32,9 +32,13 @@ constexpr int max_device_losses = 3;
 
 constexpr std::string_view progress_key = protocol::notifications::scene_progress::name;
 
-std::string progress_text(const std::string& name, std::string_view stage, float fraction) {
-  return protocol::make_notification<protocol::notifications::scene_progress>(
-      {.name = name, .stage = std::string(stage), .fraction = fraction});
+/// Tells all viewers of a session how far the load is that `by` has requested.
+void send_progress(Session& session, const std::string& by, const std::string& name,
+                   std::string_view stage, float fraction) {
+  session.viewers().send_all(
+      protocol::make_notification<protocol::notifications::scene_progress>(
+          {.name = name, .stage = std::string(stage), .fraction = fraction, .by = by}),
+      progress_key);
 }
 
 /// Thrown through the importer to end it.
@@ -123,9 +127,9 @@ void SceneLoader::load(std::shared_ptr<Session> session, const protocol::SceneLo
     }
     if (cached) {
       session->scene().show(*cached, by);
-      session->viewers().send_all(progress_text(cached->name, "ready", 1.0f), progress_key);
+      send_progress(*session, by, cached->name, "ready", 1.0f);
     } else {
-      job->waiters.push_back({std::move(session), by, done});
+      job->waiters.push_back({std::move(session), by, done, job->entry.name});
     }
   }
   condition_.notify_one();
@@ -139,7 +143,10 @@ protocol::SceneCancelled SceneLoader::cancel(const Session& session) {
     const std::lock_guard lock(mutex_);
     removed = remove_waiters([&](const Session& own) { return &own == &session; });
   }
-  for (const Waiter& waiter : removed) waiter.done(cancelled());
+  for (const Waiter& waiter : removed) {
+    send_progress(*waiter.session, waiter.by, waiter.name, "cancelled", 0.0f);
+    waiter.done(cancelled());
+  }
   return {.cancelled = !removed.empty()};
 }
 
@@ -300,10 +307,9 @@ void SceneLoader::finish(Job& job, const Result<LoadedScene>& outcome) {
     waiters = std::exchange(job.waiters, {});
     std::erase_if(jobs_, [&](const auto& other) { return other.get() == &job; });
     if (outcome) {
-      const std::string text = progress_text(job.entry.name, "ready", 1.0f);
       for (const Waiter& waiter : waiters) {
         waiter.session->scene().show(*outcome, waiter.by);
-        waiter.session->viewers().send_all(text, progress_key);
+        send_progress(*waiter.session, waiter.by, job.entry.name, "ready", 1.0f);
       }
     }
   }
@@ -313,6 +319,7 @@ void SceneLoader::finish(Job& job, const Result<LoadedScene>& outcome) {
     } else {
       log_warning({.session = waiter.session->name()},
                   job.entry.name + " was not loaded: " + outcome.error().message);
+      send_progress(*waiter.session, waiter.by, job.entry.name, "failed", 0.0f);
       waiter.done(outcome.error());
     }
   }
@@ -322,10 +329,9 @@ void SceneLoader::report_progress(Job& job, std::string_view stage, float fracti
   if (stage == job.stage && fraction < job.fraction + report_step) return;
   job.stage = stage;
   job.fraction = fraction;
-  const std::string text = progress_text(job.entry.name, stage, fraction);
   const std::lock_guard lock(mutex_);
   for (const Waiter& waiter : job.waiters) {
-    waiter.session->viewers().send_all(text, progress_key);
+    send_progress(*waiter.session, waiter.by, job.entry.name, stage, fraction);
   }
 }
 

@@ -68,6 +68,7 @@ class SceneLoader {
     std::shared_ptr<Session> session;
     std::string by;
     Completion done;
+    std::string name;  // of the scene
   };
   struct Job {
     SceneKey key;

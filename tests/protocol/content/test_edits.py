@@ -147,6 +147,14 @@ class Edits(ServerTestCase):
             await causer.call("scene.unload")
             self.assertEqual((await other.notification("scene.unloaded"))["name"], "lit")
 
+    def test_a_chosen_environment_stays_with_other_scenes(self):
+        shown = self.server.call("scene.info")["name"]
+        self.server.call("environment.set", {"name": "white"})
+        for name in ("mirror", shown):
+            self.server.call("scene.load", {"name": name})
+            self.assertEqual(self.server.call("environment.list")["current"], "white")
+        self.server.call("environment.set", {"name": None})
+
     def test_environments(self):
         listed = self.server.call("environment.list")
         names = [one["name"] for one in listed["environments"]]

@@ -124,7 +124,10 @@ class Scenes(ServerTestCase):
             progress = await other.notification("scene.progress")
             self.assertEqual(progress["name"], "furnace")
             self.assertTrue(0 <= progress["fraction"] <= 1)
-            self.assertEqual((await other.notification("scene.changed"))["scene"], info)
+            author = loader.hello["viewer"]
+            self.assertEqual(progress["by"], author)
+            self.assertEqual(await other.notification("scene.changed"),
+                             {"scene": info, "by": author})
             self.assertNotIn("scene.changed", [m["method"] for m in loader.notifications])
 
     async def test_a_later_load_replaces_an_earlier_one(self):
@@ -165,7 +168,15 @@ class Scenes(ServerTestCase):
             self.assert_error(await load, -32009, path="name")
             self.assertLess(time.monotonic() - begun, 5)
             self.assertEqual(await viewer.call("scene.info"), shown)
+            await viewer.progress_with("cancelled")
             await viewer.call("scene.load", {"name": "furnace"})
+
+    async def test_viewers_are_told_that_a_load_has_failed(self):
+        async with Viewer(self.server) as loader, Viewer(self.server) as other:
+            answer = await loader.ask("scene.load", {"name": "choices", "scene": "none"})
+            self.assert_error(answer, -32004, path="scene")
+            progress = await other.progress_with("failed")
+            self.assertEqual(progress["name"], "choices")
 
     async def test_closing_a_session_cancels_its_load(self):
         ended = self.server.log_text().count("loading slow was cancelled")

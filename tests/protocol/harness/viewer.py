@@ -174,6 +174,16 @@ class Viewer:
             return self.last
         return await self.frame_where(stays, timeout)
 
+    async def progress_with(self, stage, timeout=15):
+        """The progress of a load in this stage."""
+        deadline = asyncio.get_running_loop().time() + timeout
+        while asyncio.get_running_loop().time() < deadline:
+            for message in self.notifications:
+                if message["method"] == "scene.progress" and message["params"]["stage"] == stage:
+                    return message["params"]
+            await asyncio.sleep(0.02)
+        raise AssertionError(f"no progress {stage} in {timeout} s")
+
     async def notification(self, method, timeout=15):
         """The first notification of this name."""
         deadline = asyncio.get_running_loop().time() + timeout
