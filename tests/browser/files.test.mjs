@@ -65,7 +65,7 @@ open.test("a dropped file is uploaded, listed and loaded", async () => {
 open.test("a file can be uploaded by the file chooser", async () => {
   const { page } = await open.watch();
   const chooser = page.waitForEvent("filechooser");
-  await page.getByRole("button", { name: "Upload a .glb file" }).press("Enter");
+  await page.getByRole("button", { name: "Upload", exact: true }).press("Enter");
   await (await chooser).setFiles({ name: "chosen.glb", mimeType: "", buffer: mirror });
   await eventually(
     async () => (await open.server.call("scene.list")).current === "chosen",
@@ -81,13 +81,15 @@ open.test("an invalid file is rejected with a reason", async () => {
   const large = await toastAfterDrop(page, "large.glb", Buffer.alloc(mirror.length + 1001, 7));
   assert.match(large, /large\.glb has .* kB; the server accepts up to .* kB/);
   const text = await toastAfterDrop(page, "text.glb", Buffer.from("not a scene"));
-  assert.match(text, /The server cannot read this file/);
+  assert.match(text, /^text\.glb is incomplete: the file ends early\./);
   const truncated = await toastAfterDrop(
     page,
     "truncated.glb",
     mirror.subarray(0, mirror.length - 10),
   );
-  assert.match(truncated, /The server cannot read this file/);
+  assert.match(truncated, /^truncated\.glb is incomplete: the file ends early\./);
+  const other = await toastAfterDrop(page, "other.glb", Buffer.alloc(100, 7));
+  assert.match(other, /^other\.glb is not a glTF file\./);
   const nameTaken = await toastAfterDrop(page, "mirror.glb", mirror);
   assert.match(nameTaken, /has its own scene mirror/);
   assert.match(await toastAfterDrop(page, "scene.gltf", mirror), /Only \.glb files/);
@@ -95,7 +97,7 @@ open.test("an invalid file is rejected with a reason", async () => {
 
 closed.test("disabled uploads are reported before sending the file", async () => {
   const { page } = await closed.watch();
-  assert.equal(await page.getByRole("button", { name: "Upload a .glb file" }).isVisible(), false);
+  assert.equal(await page.getByRole("button", { name: "Upload", exact: true }).isVisible(), false);
   await drop(page, "mirror.glb", mirror);
   await page.locator(".toast", { hasText: "This server does not accept uploads" }).waitFor();
 });

@@ -204,12 +204,16 @@ embedded.test("the copied code embeds the viewer in allowed origins only", async
   await screenshot(guest, "embedded");
   const frame = guest.frames()[1];
   await frame.locator("#view").focus();
-  const { eye } = await embedded.server.call("camera.get");
+  const cameraOf = (session) => embedded.server.call("camera.get", {}, session);
+  const { sessions } = await embedded.server.call("session.list");
+  const own = sessions.find(({ name }) => name !== "main").name;
+  const [{ eye }, shared] = [await cameraOf(own), await cameraOf("main")];
   await guest.keyboard.press("ArrowLeft", { delay: 100 });
   await eventually(
-    async () => String((await embedded.server.call("camera.get")).eye) !== String(eye),
+    async () => String((await cameraOf(own)).eye) !== String(eye),
     "an orbit in the embedded page",
   );
+  assert.deepEqual(await cameraOf("main"), shared, "the page that embeds changed the shared view");
 
   const rejected = await (await embedded.context()).newPage();
   const violations = [];

@@ -155,7 +155,7 @@ stage.test("the search finds settings by description and restores the sections",
 
 stage.test("a preset is applied and marked until one of its settings changes", async () => {
   const { page } = await stage.sharedViewer();
-  const preset = page.getByRole("button", { name: "SVGF" });
+  const preset = page.getByRole("button", { name: "SVGF", exact: true });
   await preset.click();
   await eventually(async () => (await preset.getAttribute("aria-pressed")) === "true", "the mark");
   assert.equal(await stage.server.setting("shadow_blur.kernel"), "full");

@@ -78,7 +78,53 @@ stage.test("a loading scene shows its name, progress and thumbnail", async () =>
   });
   await page.locator("select[name=scene]").selectOption(other);
   await page.waitForFunction((name) => document.title.startsWith(name), other);
-  assert.ok((await page.evaluate(() => window.notices)).includes(`Loading ${other}`));
+  assert.ok((await page.evaluate(() => window.notices)).includes(`Loading ${other}…`));
+});
+
+stage.test("the old scene stays dimmed until the first frame of the new one", async () => {
+  const { page } = await stage.watch();
+  await settle(page, stage.server);
+  const { current } = await stage.server.call("scene.list");
+  await page.evaluate(() => {
+    window.ends = [];
+    const card = document.querySelector("#notice");
+    const seen = { hidden: true };
+    new MutationObserver(() => {
+      if (card.hidden && !seen.hidden) {
+        window.ends.push({ rev: window.seen.frame.stateRev, title: document.title, ...seen });
+      }
+      Object.assign(seen, { hidden: card.hidden, dims: card.classList.contains("dims") });
+      if (!card.hidden) seen.last = card.querySelector("p").textContent;
+    }).observe(card, { attributes: true, childList: true, subtree: true, characterData: true });
+  });
+  const other = current === "mirror" ? "shadow_objects" : "mirror";
+  await page.locator("select[name=scene]").selectOption(other);
+  await page.waitForFunction(() => window.ends.length > 0, undefined, { timeout: 60_000 });
+  const [end] = await page.evaluate(() => window.ends);
+  assert.match(end.title, new RegExp(`^${other}`));
+  assert.ok(end.dims, "the old scene was not dimmed");
+  assert.equal(end.last, "Rendering the first frame");
+  const { rev } = await stage.server.call("camera.get");
+  assert.ok(end.rev >= rev, `shown ${end.rev}, the scene came with ${rev}`);
+});
+
+stage.test("a load that is cancelled says so, and is no error", async () => {
+  const { page } = await stage.watch();
+  const { current } = await stage.server.call("scene.list");
+  await page.evaluate(() => {
+    const card = document.querySelector("#notice");
+    new MutationObserver(() => {
+      const cancel = card.querySelector("button");
+      if (!card.hidden && cancel.textContent === "Cancel") cancel.click();
+    }).observe(card, { attributes: true, childList: true, subtree: true, characterData: true });
+  });
+  await page.locator("select[name=scene]").selectOption("glossy_sponza_1");
+  const toast = page.locator(".toast", { hasText: "Cancelled: glossy_sponza_1 was not loaded." });
+  await toast.waitFor({ timeout: 60_000 });
+  assert.equal(await toast.getAttribute("role"), null);
+  assert.equal(await page.locator("[role=alert]").count(), 0);
+  assert.equal((await stage.server.call("scene.list")).current, current);
+  await page.locator("#notice").waitFor({ state: "hidden" });
 });
 
 stage.test("the first frame of a new page has the requested size", async () => {

@@ -1,8 +1,7 @@
-// Links, bookmarks, navigation, animation clips, unknown settings, scene thumbnails.
+// Bookmarks, navigation, animation clips, unknown settings, scene thumbnails.
 
 import assert from "node:assert/strict";
 import {
-  chooseOutput,
   distance,
   eventually,
   firstFrame,
@@ -14,64 +13,6 @@ import {
 import { Stage } from "./harness/stage.mjs";
 
 const stage = new Stage();
-
-/** The directional light and the second material, as the session has them. */
-async function editedParts() {
-  const { lights } = await stage.server.call("lights.list");
-  const { materials } = await stage.server.call("materials.list");
-  return { sun: lights.find(({ type }) => type === "directional"), material: materials[1] };
-}
-
-stage.test("a copied link restores scene, settings, light, material and camera", async () => {
-  const permissions = ["clipboard-read", "clipboard-write"];
-  const { page } = await stage.watch({ permissions });
-  await stage.server.call("settings.patch", { patch: { tone_map: { curve: "agx" } } });
-  await setCamera(page, stage.server, { eye: [1, 2, 6], target: [0, 1, 0], vertical_fov: 40 });
-  const { sun, material } = await editedParts();
-  const patch = { intensity: 2.5, direction: [0.6, -0.8, 0] };
-  await stage.server.call("lights.patch", { light: sun.name, patch });
-  await stage.server.call("materials.patch", {
-    material: material.name,
-    patch: { roughness: 0.7 },
-  });
-  // A reloaded page reads the changes from the server.
-  await page.reload();
-  await firstFrame(page);
-  await eventually(
-    async () => (await figureOf(page, "Intensity")) === "2.5",
-    "the light to be read",
-  );
-  await chooseOutput(page, "Copy link");
-  const link = await eventually(async () => {
-    const text = await page.evaluate(() => navigator.clipboard.readText());
-    return text.includes("#view=") && text;
-  }, "the link in the clipboard");
-
-  await stage.server.call("settings.patch", { patch: { tone_map: null } });
-  await stage.server.call("camera.fit");
-  await stage.server.call("scene.load", { name: "mirror" });
-  const other = await stage.open({ url: link });
-  await eventually(
-    async () => {
-      const { eye } = await stage.server.call("camera.get").catch(() => ({ eye: [0, 0, 0] }));
-      return distance(eye, [1, 2, 6]) < 1e-3;
-    },
-    "the camera of the link",
-    60_000,
-  );
-  assert.equal((await stage.server.call("scene.list")).current, "shadow_objects");
-  assert.equal(await stage.server.setting("tone_map.curve"), "agx");
-  const there = await editedParts();
-  assert.ok(Math.abs(there.sun.intensity - 2.5) < 1e-4 && there.sun.direction[0] > 0.59);
-  assert.ok(Math.abs(there.material.roughness - 0.7) < 1e-4);
-  await firstFrame(other.page);
-  await screenshot(other.page, "from_link");
-  await stage.server.call("settings.patch", { patch: { tone_map: null } });
-});
-
-/** The number that the light's row of this name shows. */
-const figureOf = (page, name) =>
-  page.locator("[data-section=lights]").getByRole("textbox", { name }).inputValue();
 
 stage.test("a bookmark persists over a reload and moves the camera in a transition", async () => {
   const { page } = await stage.watch();

@@ -77,6 +77,7 @@ function startingServer(rejections: (method: string, params: JsonObject) => Answ
     isCurrent: () => true,
     ownsSession: () => false,
     reportSkipped: (sentence: string) => void skipped.push(sentence),
+    reportFile: ({ sentence }: { sentence: string }) => void skipped.push(sentence),
   };
   return { host, calls, skipped };
 }
@@ -106,6 +107,18 @@ test("an own session gets its scene without waiting for an initial one", async (
   assert.equal(await restoreView({ ...host, ownsSession: () => true }, state), true);
   assert.equal(calls[0], 'scene.load {"name":"b.glb"}');
   assert.deepEqual(skipped, []);
+});
+
+test("an own session whose scene cannot be loaded gets the settings and nothing else", async () => {
+  const { host, calls, skipped } = startingServer((method) => {
+    if (method === "scene.info") return { error: { code: -32050, message: "no scene is loaded" } };
+    if (method !== "scene.load") return null;
+    const data = { path: "name", reason: "is not in the catalogue; did you mean a?" };
+    return { error: { code: -32004, message: "name: is not in the catalogue", data } };
+  });
+  assert.equal(await restoreView({ ...host, ownsSession: () => true }, state), true);
+  assert.deepEqual(skipped, ["There is no scene 'b.glb'."]);
+  assert.deepEqual(calls, ["settings.get {}", 'settings.patch {"patch":{"exposure":{"ev":2}}}']);
 });
 
 test("a camera that fails with a transient error is sent again", async () => {

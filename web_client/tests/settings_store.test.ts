@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import type { JsonObject } from "heliograph/json.ts";
 import { RpcPeer } from "heliograph/rpc.ts";
+import { UndoHistory } from "../src/session/undo_history.ts";
 import { SettingsStore } from "../src/session/settings_store.ts";
 
 const schema: JsonObject = {
@@ -38,7 +39,7 @@ async function connected() {
     await new Promise((resolve) => setTimeout(resolve, 0));
     return request;
   };
-  const store = new SettingsStore(rpc, (error) => errors.push(error));
+  const store = new SettingsStore(rpc, new UndoHistory(), (error) => errors.push(error));
   const loaded = store.load();
   await answer({ result: schema });
   await answer({ result: { rev: 1, settings: { exposure: { ev: 0, auto: false } } } });

@@ -1,27 +1,58 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { UndoHistory, inverseOf } from "../src/session/undo_history.ts";
+import { UndoHistory } from "../src/session/undo_history.ts";
+import { inverseOf, pathsOf } from "../src/session/settings_steps.ts";
 
 test("the inverse of a patch holds the previous values, and only those", () => {
   const tree = { taa: { enabled: true, frames: 8 }, seed: 3 };
   assert.deepEqual(inverseOf({ taa: { enabled: false } }, tree), { taa: { enabled: true } });
   assert.deepEqual(inverseOf({ seed: null }, tree), { seed: 3 });
+  assert.deepEqual(pathsOf({ taa: { enabled: false }, seed: null }), ["taa.enabled", "seed"]);
 });
 
-test("a drag is one step, another setting is another", () => {
+/** A history of numbers by name. */
+function numbers() {
   let now = 0;
+  const values: Record<string, number> = {};
   const history = new UndoHistory(() => now);
+  const change = (name: string, value: number, ofScene = false): void => {
+    const before = values[name] ?? 0;
+    const set = (to: number) => () => void (values[name] = to);
+    set(value)();
+    history.add({ label: name, key: name, ofScene, undo: set(before), redo: set(value) });
+  };
+  return { values, history, change, wait: (ms: number) => (now += ms) };
+}
+
+test("a drag is one step, another value is another, and steps have names", () => {
+  const { values, history, change, wait } = numbers();
   for (const value of [1, 2, 3]) {
-    history.add({ a: { b: value } }, { a: { b: value - 1 } });
-    now += 100;
+    change("exposure", value);
+    wait(100);
   }
-  history.add({ a: { c: 1 } }, { a: { c: 0 } });
-  assert.deepEqual(history.undo(), { a: { c: 0 } });
-  assert.deepEqual(history.undo(), { a: { b: 0 } });
+  change("sun", 5);
+  assert.deepEqual(history.next.value, { undo: "sun", redo: null });
+  assert.equal(history.undo(), "sun");
+  assert.deepEqual(history.next.value, { undo: "exposure", redo: "sun" });
+  assert.equal(history.undo(), "exposure");
+  assert.deepEqual(values, { exposure: 0, sun: 0 });
   assert.equal(history.undo(), null);
-  assert.deepEqual(history.redo(), { a: { b: 3 } });
-  now += 100;
-  history.add({ a: { b: 9 } }, { a: { b: 3 } });
-  assert.equal(history.canRedo, false);
-  assert.deepEqual(history.undo(), { a: { b: 3 } });
+  assert.equal(history.redo(), "exposure");
+  assert.equal(values.exposure, 3);
+  wait(100);
+  change("exposure", 9);
+  assert.deepEqual(history.next.value, { undo: "exposure", redo: null });
+  history.undo();
+  assert.equal(values.exposure, 3);
+});
+
+test("steps in a scene are void when another viewer loads another scene", () => {
+  const { values, history, change } = numbers();
+  change("exposure", 1);
+  change("sun", 5, true);
+  history.undo();
+  history.dropScene();
+  assert.deepEqual(history.next.value, { undo: "exposure", redo: null });
+  history.undo();
+  assert.deepEqual(values, { exposure: 0, sun: 0 });
 });

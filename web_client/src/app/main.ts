@@ -46,24 +46,35 @@ function main(): void {
   const viewer = new Viewer(document.baseURI, canvas);
   const toasts = new Toasts(find("toasts"));
   viewer.onError = (message) => toasts.show(message);
-  viewer.onInfo = (message) => toasts.inform(message);
+  viewer.onInfo = (message, topic) => toasts.inform(message, { topic });
+  viewer.onFileError = ({ sentence, detail }) => toasts.show(sentence, { topic: "scene", detail });
+  viewer.activity.watch((activity) => {
+    if (!activity || activity.transient) return;
+    toasts.inform(`${activity.name} ${activity.deed}`, { topic: `viewer ${activity.viewer}` });
+  });
+  viewer.loading.current.watch((loading) => {
+    if (loading) toasts.settle("scene");
+  });
   const navigation = new Navigation(canvas, {
     camera: () => (viewer.hello && viewer.mayChange ? viewer.camera.value : null),
     sceneSize: () => viewer.sceneSize(),
-    moved: (camera) => viewer.moveCamera(camera),
-    fit: () => void viewer.fitCamera(),
-    surfaceAt: (x, y) => viewer.surfaceAt(x, y),
+    moved: (camera, recorded) => viewer.cameraMoves.moveTo(camera, recorded),
+    fit: () => fit(),
+    surfaceAt: (x, y) => viewer.queries.surfaceAt(x, y),
     focus: (x, y) => void focusAt(x, y),
   });
   const focusAt = async (x: number, y: number): Promise<void> => {
     if (!viewer.mayChange) return;
-    const pick = await viewer.pick(x, y);
+    const pick = await viewer.queries.pick(x, y);
     const camera = viewer.camera.value;
     if (!camera || !pick?.position || pick.distance === null) return;
     navigation.goTo(focusOn(camera, pick.position, pick.distance * focusDistance));
   };
-  viewer.animateCameraTo = (camera) => navigation.goTo(camera);
-  viewer.cameraBusy = () => navigation.active;
+  const fit = (): void => {
+    if (viewer.mayChange && !viewer.restoring.value) void viewer.cameraMoves.fit();
+  };
+  viewer.cameraMoves.animateTo = (camera, recorded) => navigation.goTo(camera, recorded);
+  viewer.cameraMoves.isBusy = () => navigation.active;
 
   const divider = createDivider(find("compare"));
   mountMjpegFallback(viewer, find("mjpeg"));
@@ -114,8 +125,8 @@ function main(): void {
   addEventListener("keydown", (event) => {
     const isUndo = (event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "z";
     if (isUndo && viewer.mayChange && !document.activeElement?.matches(textInputs)) {
-      if (event.shiftKey) viewer.settings.redo();
-      else viewer.settings.undo();
+      if (event.shiftKey) viewer.redo();
+      else viewer.undo();
       event.preventDefault();
     }
     if (event.ctrlKey || event.metaKey || event.altKey) return;
@@ -132,7 +143,7 @@ function main(): void {
   });
   const openLink = (): void => {
     const linked = viewIn(location.href);
-    if (linked) void viewer.show(linked);
+    if (linked) viewer.own.openLink(linked);
   };
   addEventListener("hashchange", openLink);
   openLink();

@@ -25,7 +25,7 @@ export function outputActions(viewer: Viewer, host: OutputHost): MenuItem[] {
       label: "Copy image",
       icon: "copy",
       run: attempt(async () => {
-        const image = viewer.capture().then(captureBlob);
+        const image = viewer.queries.capture().then(captureBlob);
         await navigator.clipboard.write([new ClipboardItem({ "image/png": image })]);
         host.inform("Image copied to the clipboard");
       }),

@@ -100,7 +100,7 @@ export function createSaveDialog(
     const wanted = samples.value === "now" ? shownSamples() : undefined;
     setSaving(true);
     try {
-      const capture = await viewer.capture(undefined, chosen, wanted);
+      const capture = await viewer.queries.capture(undefined, chosen, wanted);
       if (own !== attempt) return;
       const suffix = capture.buffer === "output" ? "" : `-${capture.buffer}`;
       const name = `${host.fileStem()}${suffix}.${chosen === "jpeg" ? "jpg" : chosen}`;

@@ -28,7 +28,7 @@ const entries: [title: string, rows: [keys: string[], meaning: string][]][] = [
       [["Space"], "Play or pause"],
       [["F"], "Fit the scene into view"],
       [["B"], "Bookmark this view"],
-      [["Ctrl Z"], "Undo a setting (Ctrl Shift Z: redo)"],
+      [["Ctrl Z"], "Undo the last change (Ctrl Shift Z: redo)"],
       [["H"], "Hide or show the panel"],
       [["Enter"], "Fullscreen (while the view has the focus)"],
       [["?"], "Show this help"],

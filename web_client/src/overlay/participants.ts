@@ -29,6 +29,8 @@ export function mountParticipants(
   });
   own.value = participantName() ?? "";
   const mode = element("button", { type: "button", class: "button quiet" });
+  const change = element("button", { type: "button", class: "button quiet" });
+  const explanation = element("p", { class: "facts" });
   const invite = element(
     "button",
     {
@@ -47,10 +49,12 @@ export function mountParticipants(
     "div",
     { class: "participants-card", id: "participants-card", hidden: true },
     sessionName,
+    explanation,
     list,
     own,
     invite,
     mode,
+    change,
   );
   const opener = element(
     "button",
@@ -84,19 +88,30 @@ export function mountParticipants(
     const exclusive = viewer.session.value?.control === "exclusive";
     void viewer.setControl({ mode: exclusive ? "shared" : "exclusive" });
   });
+  change.addEventListener("click", () => {
+    open(false);
+    if (viewer.own.shared.value === null) viewer.own.openCopy();
+    else viewer.own.joinShared();
+  });
   // Without a connection the list is out of date.
   const updateVisibility = (): void => {
     const { kind } = viewer.connection.state.value;
     root.hidden = viewer.session.value === null || (kind !== "live" && kind !== "connecting");
   };
   viewer.connection.state.watch(updateVisibility);
-  viewer.session.watch((session) => {
+  const update = (): void => {
     updateVisibility();
+    const session = viewer.session.value;
     if (!session) return;
     const me = session.viewers.find(({ you }) => you);
     setText(count, String(session.viewers.length));
     opener.setAttribute("aria-label", `Participants: ${session.viewers.length}`);
-    setText(sessionName, `Session ${session.name}`);
+    const isOwn = viewer.own.shared.value !== null;
+    const others = session.viewers.length - 1;
+    setText(sessionName, isOwn ? "Your own session" : `Shared session ${session.name}`);
+    setText(explanation, describeSession(isOwn, others));
+    setText(change, isOwn ? "Join the shared session" : "Open a copy of your own");
+    change.hidden = !isOwn && !viewer.mayCreateSessions;
     const exclusive = session.control === "exclusive";
     setText(mode, exclusive ? "Share control with all viewers" : "Take exclusive control");
     mode.hidden = !me?.control;
@@ -107,7 +122,9 @@ export function mountParticipants(
         ? [takeLine()]
         : []),
     );
-  });
+  };
+  /** What each viewer did last, by its id. */
+  const deeds = new Map<string, string>();
   viewer.controlState.watch(({ kind }) => {
     opener.classList.toggle("without-control", kind !== "may_change");
   });
@@ -120,8 +137,13 @@ export function mountParticipants(
     const canHandOver = session?.control === "exclusive" && me?.control && !participant.you;
     return element(
       "li",
-      {},
-      element("span", { class: "participant" }, participant.you ? `${name} (you)` : name),
+      { "data-viewer": participant.viewer },
+      element(
+        "span",
+        { class: "participant" },
+        participant.you ? `${name} (you)` : name,
+        element("span", { class: "deed" }, deeds.get(participant.viewer)),
+      ),
       inControl ? element("span", { class: "in-control" }, "in control") : null,
       canHandOver
         ? button(
@@ -133,6 +155,21 @@ export function mountParticipants(
     );
   };
   const takeLine = (): HTMLElement => element("li", {}, createTakeControlButton(viewer));
+  viewer.session.watch(update);
+  viewer.own.shared.watch(update);
+  viewer.capabilities.methods.watch(update);
+  viewer.activity.watch((activity) => {
+    if (!activity) return;
+    deeds.set(activity.viewer, activity.deed);
+    const shown = list.querySelector(`[data-viewer="${activity.viewer}"] .deed`);
+    if (shown) setText(shown, activity.deed);
+  });
+}
+
+function describeSession(isOwn: boolean, others: number): string {
+  if (others > 0)
+    return `${others === 1 ? "Another viewer sees" : `${others} others see`} your changes.`;
+  return isOwn ? "Only you see what you change." : "Viewers who join see your changes.";
 }
 
 /** A URL of the page that leads other browsers to this session. */

@@ -2,7 +2,8 @@
 
 import { humanise } from "heliograph/settings_schema.ts";
 import { thumbnailOf } from "../previews/thumbnails.ts";
-import type { ControlState } from "../session/control_state.ts";
+import { type ControlState, viewerName } from "../session/control_state.ts";
+import { type Loading, firstFrameStage } from "../session/scene_loading.ts";
 import type { Viewer } from "../session/viewer.ts";
 import type { ConnectionState } from "../stream/connection.ts";
 import { element, setText } from "../widgets/element.ts";
@@ -28,12 +29,14 @@ export function mountStatus(viewer: Viewer, pill: HTMLElement, card: HTMLElement
   const update = (): void => {
     const state = viewer.connection.state.value;
     pill.dataset.state = state.kind;
-    setText(pillText, pillLabel(state, viewer.controlState.value));
+    const own = viewer.own.shared.value !== null;
+    setText(pillText, pillLabel(state, viewer.controlState.value, own));
     view.show(noticeFor(viewer, state));
   };
   viewer.connection.state.watch(update);
   viewer.controlState.watch(update);
-  viewer.loading.watch(update);
+  viewer.own.shared.watch(update);
+  viewer.loading.current.watch(update);
   viewer.restoring.watch(update);
   viewer.scenes.watch(update);
   viewer.scene.watch(update);
@@ -48,12 +51,12 @@ export function mountStatus(viewer: Viewer, pill: HTMLElement, card: HTMLElement
   }, retryRefreshMs);
 }
 
-function pillLabel(state: ConnectionState, controlState: ControlState): string {
+function pillLabel(state: ConnectionState, controlState: ControlState, own: boolean): string {
   switch (state.kind) {
     case "connecting":
       return "Connecting";
     case "live":
-      return liveLabel(controlState);
+      return own ? "Live, your own session" : liveLabel(controlState);
     case "lost":
       return "Reconnecting";
     case "mjpeg_fallback":
@@ -121,22 +124,12 @@ function noticeFor(viewer: Viewer, state: ConnectionState): Notice | null {
 }
 
 function liveNotice(viewer: Viewer): Notice | null {
-  const loading = viewer.loading.value;
-  if (loading) {
-    return {
-      title: `Loading ${loading.name}`,
-      poster: thumbnailOf(loading.name),
-      action: viewer.capabilities.has("scene.cancel")
-        ? { label: "Cancel", run: () => void viewer.cancelLoad() }
-        : undefined,
-      detail: humanise(loading.stage),
-      progress: loading.fraction > 0 ? loading.fraction : null,
-      dims: true,
-    };
-  }
+  const loading = viewer.loading.current.value;
+  if (loading) return loadingNotice(viewer, loading);
   if (viewer.restoring.value) {
-    const detail = "Restoring scene, settings and camera";
-    return { title: "Restoring the view", detail, progress: null, dims: true };
+    const title = viewer.own.shared.value === null ? "Restoring the view" : "Opening the view";
+    const detail = "Loading scene, settings and camera";
+    return { title, detail, progress: null, dims: true };
   }
   if (!viewer.scene.value) {
     return viewer.scenes.value.scenes.length > 0
@@ -153,6 +146,27 @@ function liveNotice(viewer: Viewer): Notice | null {
     return { title: "Rendering", detail, progress: null, dims: false };
   }
   return null;
+}
+
+/** The old scene stays visible, dimmed, up to the first frame of the new one. */
+function loadingNotice(viewer: Viewer, loading: Loading): Notice {
+  const { kind, name, stage, fraction, by } = loading;
+  const isScene = kind === "scene" && stage !== firstFrameStage;
+  const viewers = viewer.session.value?.viewers ?? [];
+  const author = viewers.findIndex((one) => one.viewer === by && !one.you);
+  const other = viewers[author];
+  const detail = stage === firstFrameStage ? "Rendering the first frame" : humanise(stage);
+  return {
+    title: `Loading ${name}…`,
+    poster: kind === "scene" ? thumbnailOf(name) : null,
+    action:
+      isScene && viewer.mayChange && viewer.capabilities.has("scene.cancel")
+        ? { label: "Cancel", run: () => void viewer.loading.cancel() }
+        : undefined,
+    detail: other ? `${viewerName(other, author)} loads it. ${detail}` : detail,
+    progress: fraction > 0 && stage !== firstFrameStage ? fraction : null,
+    dims: true,
+  };
 }
 
 function countdown(retryAt: number): string {

@@ -1,11 +1,12 @@
 // Uploads a scene file that was dropped on the page or chosen, and loads it.
 
+import { type FileError, describeFileError } from "../session/file_errors.ts";
 import { describeControl } from "../session/control_state.ts";
 import type { Viewer } from "../session/viewer.ts";
 import { element, setText } from "../widgets/element.ts";
 import type { Toasts } from "./toasts.ts";
 
-const uploadsDisabled = "This server does not accept uploads";
+const uploadsDisabled = "This server does not accept uploads.";
 const megabyte = 1024 * 1024;
 
 export function mountUpload(viewer: Viewer, root: HTMLElement, toasts: Toasts): void {
@@ -42,16 +43,29 @@ export async function uploadScene(viewer: Viewer, file: File, toasts: Toasts): P
     return;
   }
   const name = sceneName(file.name);
+  const by = viewer.hello?.viewer ?? "";
   try {
     const url = viewer.connection.address.url(`api/v1/scenes/${name}`);
-    await upload(url, name, file, (fraction) => {
-      viewer.loading.set({ name, stage: "uploading", fraction });
+    await upload(url, file, (fraction) => {
+      viewer.loading.start({ kind: "scene", name, stage: "uploading", fraction, by });
     });
     await viewer.refreshScenes();
-    await viewer.loadScene(name);
+    await viewer.loading.load(name);
   } catch (error) {
-    viewer.loading.set(null);
-    toasts.show((error as Error).message);
+    viewer.loading.end();
+    toasts.show((error as Error).message, {
+      topic: "scene",
+      detail: (error as UploadError).detail,
+    });
+  }
+}
+
+class UploadError extends Error {
+  readonly detail: string;
+
+  constructor({ sentence, detail }: FileError) {
+    super(sentence);
+    this.detail = detail;
   }
 }
 
@@ -89,12 +103,7 @@ export function sceneName(file: string): string {
 }
 
 /** Rejects with a sentence for the user. XMLHttpRequest, because fetch reports no progress. */
-function upload(
-  url: URL,
-  name: string,
-  file: File,
-  progress: (fraction: number) => void,
-): Promise<void> {
+function upload(url: URL, file: File, progress: (fraction: number) => void): Promise<void> {
   return new Promise((resolve, reject) => {
     const request = new XMLHttpRequest();
     request.open("PUT", url);
@@ -102,25 +111,28 @@ function upload(
     request.onerror = () => reject(new Error("The upload failed: no connection to the server"));
     request.onload = () => {
       if (request.status === 201) resolve();
-      else reject(new Error(rejectionSentence(name, request.status, request.responseText.trim())));
+      else
+        reject(new UploadError(rejection(file.name, request.status, request.responseText.trim())));
     };
     progress(0);
     request.send(file);
   });
 }
 
-function rejectionSentence(name: string, status: number, text: string): string {
+/** Why the server did not take the file. */
+function rejection(file: string, status: number, text: string): FileError {
+  const plain = (sentence: string): FileError => ({ sentence, detail: "" });
   switch (status) {
     case 400:
-      return `The server cannot read this file: ${text}`;
+      return describeFileError(file, text);
     case 404:
     case 405:
-      return uploadsDisabled;
+      return plain(uploadsDisabled);
     case 409:
-      return `The server has its own scene ${name}: rename the file`;
+      return plain(`The server has its own scene ${sceneName(file)}: rename the file.`);
     case 413:
-      return "The file is larger than the server accepts";
+      return plain(`${file} is larger than the server accepts.`);
     default:
-      return text || `The server rejected the file (HTTP ${status})`;
+      return plain(text || `The server rejected ${file} (HTTP ${status}).`);
   }
 }

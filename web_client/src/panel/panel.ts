@@ -2,6 +2,7 @@
 
 import { preferences } from "../common/preferences.ts";
 import type { Signal } from "../common/signal.ts";
+
 import { type Viewer, bufferSetting } from "../session/viewer.ts";
 import { button, element, icon } from "../widgets/element.ts";
 import { type MenuItem, createMenu } from "../widgets/menu.ts";
@@ -12,6 +13,7 @@ import { createSceneTab, appearanceGroups } from "./scene/scene_tab.ts";
 import { createSettingsTab } from "./settings/settings_tab.ts";
 import { type ResolutionChoice, createStreamSection } from "./timing/stream_section.ts";
 import { createTimingTab } from "./timing/timing_tab.ts";
+import { createUndoButtons } from "./undo_buttons.ts";
 
 interface PanelActions {
   output: MenuItem[];
@@ -62,7 +64,8 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
   const header = element(
     "header",
     {},
-    element("span", { class: "brand" }, icon("sun"), "Heliograph"),
+    element("span", { class: "brand" }, icon("sun"), element("span", {}, "Heliograph")),
+    ...createUndoButtons(viewer),
     createMenu("Save and share", "share", actions.output),
     button("Help (?)", "help", actions.help),
     actions.fullscreen ? button("Fullscreen", "fullscreen", actions.fullscreen) : null,

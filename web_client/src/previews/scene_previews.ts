@@ -59,7 +59,7 @@ export class ScenePreviews {
   /** Nothing moves in this session, and no other session has viewers. */
   private async serverIsIdle(): Promise<boolean> {
     const { viewer } = this;
-    const busy = viewer.loading.value || viewer.restoring.value || viewer.animation.value?.playing;
+    const busy = viewer.loading.current.value || viewer.restoring.value || viewer.animation.value?.playing;
     if (document.hidden || !viewer.hello || busy || !viewer.frame.value?.final) return false;
     if (
       !viewer.capabilities.has("session.create") ||

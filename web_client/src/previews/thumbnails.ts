@@ -33,7 +33,7 @@ export function mountThumbnails(viewer: Viewer): void {
 async function captureThumbnail(viewer: Viewer): Promise<void> {
   const scene = viewer.scene.value?.name;
   const buffer = viewer.settings.value(bufferSetting) ?? "output";
-  if (!scene || viewer.loading.value || viewer.restoring.value || buffer !== "output") return;
+  if (!scene || viewer.loading.current.value || viewer.restoring.value || buffer !== "output") return;
   const frame = await viewer.connection.copyFrame();
   if (!frame) return;
   const canvas = document.createElement("canvas");

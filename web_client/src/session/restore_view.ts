@@ -5,6 +5,7 @@ import type { JsonObject } from "heliograph/json.ts";
 import { ErrorCode } from "heliograph/messages.ts";
 import { ChannelClosed, RpcError, type RpcPeer, timedOut } from "heliograph/rpc.ts";
 import type { ControlGroup } from "heliograph/settings_schema.ts";
+import { type FileError, describeLoadError } from "./file_errors.ts";
 import { type Edits, patchesTowards } from "./scene_edits.ts";
 import { type ViewState, patchTowards, withoutPath } from "./view_state.ts";
 
@@ -23,23 +24,31 @@ export interface RestoreHost {
   ownsSession(): boolean;
   /** Reports a part that could not be restored. */
   reportSkipped(sentence: string): void;
+  /** Reports that the scene could not be loaded. */
+  reportFile(error: FileError): void;
 }
 
 /** Resolves to true when every part is acknowledged, to false when the state is not current. */
 export async function restoreView(host: RestoreHost, state: ViewState): Promise<boolean> {
-  const steps = [
-    restoreScene,
-    restoreSettings,
-    restoreEnvironment,
-    restoreLights,
-    restoreMaterials,
-    restoreClip,
-    restoreCamera,
-  ];
-  for (const step of steps) {
-    if (!(await retryWhileBusy(host, () => step(host, state)))) return false;
-  }
-  return host.isCurrent();
+  const run = async (steps: Step[]): Promise<boolean> => {
+    for (const step of steps) {
+      if (!(await retryWhileBusy(host, () => step(host, state)))) return false;
+    }
+    return host.isCurrent();
+  };
+  if (!(await run([restoreScene, restoreSettings]))) return false;
+  if (host.ownsSession() && !(await hasScene(host))) return host.isCurrent();
+  return run([restoreEnvironment, restoreLights, restoreMaterials, restoreClip, restoreCamera]);
+}
+
+type Step = (host: RestoreHost, state: ViewState) => Promise<void>;
+
+/** In a session of the page's own no other client loads a scene where this state has failed to. */
+async function hasScene({ rpc }: RestoreHost): Promise<boolean> {
+  return rpc.request("scene.info").then(
+    () => true,
+    (error: unknown) => !(error instanceof RpcError && error.code === ErrorCode.notReady),
+  );
 }
 
 /** Repeats a step while the server is busy or not ready, until the connection is lost. */
@@ -67,7 +76,10 @@ function isTransient(error: unknown): boolean {
 }
 
 /** Waits for the server's initial scene first: loading another one would cancel it. */
-async function restoreScene({ rpc, ownsSession }: RestoreHost, state: ViewState): Promise<void> {
+async function restoreScene(
+  { rpc, ownsSession, reportFile }: RestoreHost,
+  state: ViewState,
+): Promise<void> {
   const info = await rpc.request("scene.info").catch((error: unknown) => {
     if (!ownsSession() || state.scene === undefined || !isTransient(error)) throw error;
     return null;
@@ -81,7 +93,13 @@ async function restoreScene({ rpc, ownsSession }: RestoreHost, state: ViewState)
   const name = scene ?? info?.name;
   if (name === undefined) return;
   const load = { name, scene: index, variant };
-  await rpc.request("scene.load", load, loadTimeoutMs);
+  try {
+    await rpc.request("scene.load", load, loadTimeoutMs);
+  } catch (error) {
+    if (error instanceof ChannelClosed || isTransient(error)) throw error;
+    const cancelled = error instanceof RpcError && error.code === ErrorCode.conflict;
+    if (!cancelled) reportFile(describeLoadError(name, error));
+  }
 }
 
 /** Settings that this server rejects are left out; all others are restored. */

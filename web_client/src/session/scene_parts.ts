@@ -10,15 +10,22 @@ import type {
   SceneInfo,
 } from "heliograph/messages.ts";
 import { ChannelClosed, type RpcPeer } from "heliograph/rpc.ts";
+import { humanise } from "heliograph/settings_schema.ts";
 import { PatchSender } from "../common/patch_sender.ts";
 import { Signal } from "../common/signal.ts";
 import { type Edits, type Part, editsOf } from "./scene_edits.ts";
+import type { SceneLoading } from "./scene_loading.ts";
 import type { ServerCapabilities } from "./server_capabilities.ts";
+import type { UndoHistory } from "./undo_history.ts";
+
+const loadTimeoutMs = 600_000;
 
 interface ScenePartsHost {
   rpc: RpcPeer;
   scene: Signal<SceneInfo | null>;
   capabilities: ServerCapabilities;
+  history: UndoHistory;
+  loading: SceneLoading;
   report(error: unknown): void;
 }
 
@@ -43,11 +50,13 @@ export class SceneParts {
   }
 
   patchLight(name: string, patch: Partial<LightInfo>): void {
+    this.remember(name, patch, this.lights, this.lightSender);
     this.lights.set(merged(this.lights.value, name, patch));
     this.lightSender.push(name, patch as unknown as JsonObject);
   }
 
   patchMaterial(name: string, patch: Partial<MaterialInfo>): void {
+    this.remember(name, patch, this.materials, this.materialSender);
     this.materials.set(merged(this.materials.value, name, patch));
     this.materialSender.push(name, patch as unknown as JsonObject);
   }
@@ -58,22 +67,82 @@ export class SceneParts {
   }
 
   /** Resets the light to the values of the file. */
-  async resetLight(name: string): Promise<void> {
+  resetLight(name: string): void {
     const light = this.lights.value.find((part) => part.name === name);
     const shown = ["direction", "angular_diameter", "radius", "intensity", "enabled"];
     const patch = resetPatch(light, shown);
-    this.takeLight(await this.attempt("lights.patch", { light: name, patch }));
+    this.remember(name, patch as object, this.lights, this.lightSender);
+    this.lightSender.push(name, patch);
   }
 
-  async resetMaterial(name: string): Promise<void> {
+  resetMaterial(name: string): void {
     const material = this.materials.value.find((part) => part.name === name);
     const patch = resetPatch(material, ["base_color", "roughness", "metallic"]);
-    this.takeMaterial(await this.attempt("materials.patch", { material: name, patch }));
+    this.remember(name, patch as object, this.materials, this.materialSender);
+    this.materialSender.push(name, patch);
   }
 
-  async chooseEnvironment(name: string | null): Promise<void> {
-    await this.attempt("environment.set", { name });
-    await this.read();
+  /** null: the scene's own. */
+  chooseEnvironment(name: string | null): void {
+    const before = this.environment.value?.current ?? null;
+    if (name === before) return;
+    this.host.history.add({
+      label: "environment",
+      key: `environment ${name}`,
+      undo: () => void this.setEnvironment(before),
+      redo: () => void this.setEnvironment(name),
+    });
+    void this.setEnvironment(name);
+  }
+
+  private async setEnvironment(name: string | null): Promise<void> {
+    const { loading, rpc } = this.host;
+    const shown = name ?? "the scene's environment";
+    loading.start({ kind: "environment", name: shown, stage: "loading", fraction: 0, by: "" });
+    try {
+      const state = await rpc.request("environment.set", { name }, loadTimeoutMs);
+      this.environment.set(state);
+      loading.takesEffect(state.rev);
+    } catch (error) {
+      loading.end();
+      this.host.report(error);
+      if (!(error instanceof ChannelClosed)) await this.read();
+    }
+  }
+
+  /** A step of the history: the members of the patch as they were before. */
+  private remember<Item extends Part>(
+    name: string,
+    patch: Partial<Item>,
+    parts: Signal<Item[]>,
+    sender: PatchSender,
+  ): void {
+    const part = parts.value.find((one) => one.name === name);
+    const members = Object.keys(patch);
+    if (!part || members.length === 0) return;
+    const shown = part as unknown as JsonObject;
+    const values = Object.fromEntries(members.map((member) => [member, shown[member] ?? null]));
+    // What did not differ from the file is reset, so that it is not marked as changed.
+    const sent = Object.fromEntries(
+      members.map((member) => [
+        member,
+        part.changed?.includes(member) === false ? null : (shown[member] ?? null),
+      ]),
+    );
+    this.host.history.add({
+      label:
+        members.length === 1 ? `${humanise(members[0] as string).toLowerCase()} of ${name}` : name,
+      key: `${name} ${members.join()}`,
+      ofScene: true,
+      undo: () => {
+        parts.set(merged(parts.value, name, values as Partial<Item>));
+        sender.push(name, sent);
+      },
+      redo: () => {
+        if (!Object.values(patch).includes(null)) parts.set(merged(parts.value, name, patch));
+        sender.push(name, patch as unknown as JsonObject);
+      },
+    });
   }
 
   /** Takes a change by another viewer. */
@@ -120,7 +189,7 @@ export class SceneParts {
     }
   }
 
-  private async attempt<Name extends "lights.patch" | "materials.patch" | "environment.set">(
+  private async attempt<Name extends "lights.patch" | "materials.patch">(
     method: Name,
     params: Methods[Name]["params"],
   ): Promise<Methods[Name]["result"] | null> {

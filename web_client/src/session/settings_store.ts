@@ -10,8 +10,10 @@ import {
   describeControls,
 } from "heliograph/settings_schema.ts";
 import { joinPatches, mergePatch, patchOf, sameValue, valueAt } from "heliograph/settings_tree.ts";
+import { presetLabel, withPlainLabels } from "../common/labels.ts";
 import { Signal } from "../common/signal.ts";
-import { UndoHistory, inverseOf } from "./undo_history.ts";
+import { describePatch, inverseOf, pathsOf } from "./settings_steps.ts";
+import type { UndoHistory } from "./undo_history.ts";
 
 const noControls: ControlGroup = {
   path: "",
@@ -25,7 +27,7 @@ const noControls: ControlGroup = {
 export class SettingsStore {
   readonly schema = new Signal<ControlGroup>(noControls);
   readonly tree = new Signal<JsonObject>({});
-  readonly history = new UndoHistory();
+  private readonly history: UndoHistory;
   private readonly rpc: RpcPeer;
   private readonly failed: (error: unknown) => void;
   private defaults: JsonObject = {};
@@ -33,8 +35,9 @@ export class SettingsStore {
   private unsent: JsonObject | null = null;
   private sending = false;
 
-  constructor(rpc: RpcPeer, failed: (error: unknown) => void) {
+  constructor(rpc: RpcPeer, history: UndoHistory, failed: (error: unknown) => void) {
     this.rpc = rpc;
+    this.history = history;
     this.failed = failed;
   }
 
@@ -48,7 +51,7 @@ export class SettingsStore {
     const schemaText = JSON.stringify(schema);
     if (schemaText !== this.schemaText) {
       this.schemaText = schemaText;
-      const described = describeControls(schema);
+      const described = withPlainLabels(describeControls(schema));
       this.defaults = defaultTree(described);
       this.tree.set(state.settings);
       this.schema.set(described);
@@ -78,25 +81,15 @@ export class SettingsStore {
 
   /** Applies a change that can be undone. */
   apply(patch: JsonObject): void {
-    this.history.add(patch, inverseOf(patch, this.tree.value));
+    this.remember(describePatch(this.schema.value, patch), patch, this.tree.value);
     this.patch(patch);
-  }
-
-  undo(): void {
-    const patch = this.history.undo();
-    if (patch) this.patch(patch);
-  }
-
-  redo(): void {
-    const patch = this.history.redo();
-    if (patch) this.patch(patch);
   }
 
   /** Applies a preset of the server; its result is the patch that it stands for. */
   async choosePreset(name: string): Promise<JsonObject> {
     const before = this.tree.value;
     const answer = await this.rpc.request("settings.preset", { name });
-    this.history.add(answer.applied, inverseOf(answer.applied, before));
+    this.remember(`preset ${presetLabel(name)}`, answer.applied, before);
     this.tree.set(mergePatch(this.tree.value, answer.applied, this.defaults));
     return answer.applied;
   }
@@ -121,6 +114,16 @@ export class SettingsStore {
   /** Takes a change by another viewer. */
   receive(patch: JsonObject): void {
     this.tree.set(mergePatch(this.tree.value, patch, this.defaults));
+  }
+
+  private remember(label: string, patch: JsonObject, before: JsonObject): void {
+    const inverse = inverseOf(patch, before);
+    this.history.add({
+      label,
+      key: `settings ${pathsOf(patch).sort().join()}`,
+      undo: () => this.patch(inverse),
+      redo: () => this.patch(patch),
+    });
   }
 
   /** Shows the change now; sends one patch at a time and merges those that arrive during a call. */

@@ -1,37 +1,31 @@
-// Undo and redo of settings. All changes of one drag are one step.
+// One history of everything that this page changes: settings, lights, materials, environment,
+// camera, scene. All changes of one drag are one step.
 
-import type { JsonObject, JsonValue } from "heliograph/json.ts";
-import { isObject, joinPatches } from "heliograph/settings_tree.ts";
+import { Signal } from "../common/signal.ts";
 
 interface Step {
-  undo: JsonObject;
-  redo: JsonObject;
-  /** The settings that it changes; only steps with the same ones are merged. */
-  paths: string;
-  at: number;
+  /** What was changed, as in "Undo: exposure". */
+  label: string;
+  /** Steps in quick succession with the same key are one. */
+  key: string;
+  /** It concerns the content of a scene and is void when another viewer loads another one. */
+  ofScene?: boolean;
+  undo(): void;
+  redo(): void;
+}
+
+/** The labels of the next steps; null where there is none. */
+interface NextSteps {
+  undo: string | null;
+  redo: string | null;
 }
 
 const mergeWithinMs = 900;
 const maxSteps = 200;
 
-/** The values that a patch will replace: applied later, they undo it. */
-export function inverseOf(patch: JsonObject, tree: JsonObject): JsonObject {
-  const inverse: JsonObject = {};
-  for (const [name, value] of Object.entries(patch)) {
-    const before = tree[name];
-    if (isObject(value) && isObject(before)) inverse[name] = inverseOf(value, before);
-    else if (before !== undefined) inverse[name] = before;
-  }
-  return inverse;
-}
-
-function leafPaths(patch: JsonValue, prefix = ""): string[] {
-  if (!isObject(patch)) return [prefix];
-  return Object.entries(patch).flatMap(([name, value]) => leafPaths(value, `${prefix}.${name}`));
-}
-
 export class UndoHistory {
-  private done: Step[] = [];
+  readonly next = new Signal<NextSteps>({ undo: null, redo: null });
+  private done: (Step & { at: number })[] = [];
   private undone: Step[] = [];
   private readonly clock: () => number;
 
@@ -39,46 +33,56 @@ export class UndoHistory {
     this.clock = clock;
   }
 
-  get canUndo(): boolean {
-    return this.done.length > 0;
-  }
-
-  get canRedo(): boolean {
-    return this.undone.length > 0;
-  }
-
-  /** Adds a change; `undo` leads back to the values before it. */
-  add(redo: JsonObject, undo: JsonObject): void {
+  /** Adds a change that was made. */
+  add(step: Step): void {
     const at = this.clock();
-    const paths = leafPaths(redo).sort().join();
     const last = this.done[this.done.length - 1];
     this.undone = [];
-    if (last && last.paths === paths && at - last.at < mergeWithinMs) {
-      last.redo = joinPatches(last.redo, redo);
+    if (last && last.key === step.key && at - last.at < mergeWithinMs) {
+      last.redo = step.redo;
       last.at = at;
-      return;
+    } else {
+      this.done.push({ ...step, at });
+      if (this.done.length > maxSteps) this.done.shift();
     }
-    this.done.push({ redo, undo, paths, at });
-    if (this.done.length > maxSteps) this.done.shift();
+    this.announce();
   }
 
-  /** The patch that undoes the last step, or null. */
-  undo(): JsonObject | null {
+  /** Undoes the last step. Returns its label, or null without one. */
+  undo(): string | null {
     const step = this.done.pop();
     if (!step) return null;
     this.undone.push(step);
-    return step.undo;
+    step.undo();
+    this.announce();
+    return step.label;
   }
 
-  redo(): JsonObject | null {
+  redo(): string | null {
     const step = this.undone.pop();
     if (!step) return null;
     this.done.push({ ...step, at: -Infinity });
-    return step.redo;
+    step.redo();
+    this.announce();
+    return step.label;
+  }
+
+  /** Another viewer has loaded another scene. */
+  dropScene(): void {
+    const stays = ({ ofScene }: Step): boolean => !ofScene;
+    this.done = this.done.filter(stays);
+    this.undone = this.undone.filter(stays);
+    this.announce();
   }
 
   clear(): void {
     this.done = [];
     this.undone = [];
+    this.announce();
+  }
+
+  private announce(): void {
+    const label = (steps: Step[]): string | null => steps[steps.length - 1]?.label ?? null;
+    this.next.set({ undo: label(this.done), redo: label(this.undone) });
   }
 }

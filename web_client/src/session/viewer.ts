@@ -2,45 +2,43 @@
 // that the frames are drawn to.
 
 import { Codec } from "heliograph/frame_header.ts";
-import type { Vector3 } from "heliograph/json.ts";
 import {
   type AnimationState,
-  type Capture,
-  type FrameCaptureParams,
   type FrameStats,
   type Hello,
   type Notifications,
-  type Pick,
   type SceneInfo,
   type SceneList,
-  type SceneProgress,
   type SessionControlParams,
   type SessionInfo,
   ErrorCode,
 } from "heliograph/messages.ts";
 import { ChannelClosed, RpcError, type RpcPeer } from "heliograph/rpc.ts";
 import type { CameraPose } from "../common/camera_pose.ts";
-import { captureBlob, thumbnailUrl } from "../common/image_files.ts";
 import { Signal } from "../common/signal.ts";
 import { length, subtract } from "../common/vector.ts";
 import { CanvasPainter } from "../stream/canvas_painter.ts";
 import { Connection } from "../stream/connection.ts";
 import { LatencyMeter } from "../stream/latency.ts";
 import { RateMeter } from "../stream/rates.ts";
-import { type DrawnFrame, clockMs } from "../stream/worker_messages.ts";
+import { type DrawnFrame } from "../stream/worker_messages.ts";
+import { type Activity, activityOf } from "./activity.ts";
 import { type ControlState, controlStateOf, describeControl } from "./control_state.ts";
+import { CameraMoves } from "./camera_moves.ts";
+import type { FileError } from "./file_errors.ts";
+import { FrameQueries } from "./frame_queries.ts";
+import { OwnSession } from "./own_session.ts";
 import { type RestoreHost, restoreView } from "./restore_view.ts";
+import { SceneLoading } from "./scene_loading.ts";
 import { SceneParts } from "./scene_parts.ts";
 import { ServerCapabilities } from "./server_capabilities.ts";
 import { SessionRestore } from "./session_restore.ts";
 import { SettingsStore } from "./settings_store.ts";
 import { StreamRequests } from "./stream_requests.ts";
+import { UndoHistory } from "./undo_history.ts";
 import { type ViewState, changesOf, clipState } from "./view_state.ts";
 
 const statsIntervalMs = 250;
-const progressTimeoutMs = 20_000;
-const loadTimeoutMs = 600_000;
-const captureTimeoutMs = 120_000;
 
 export const bufferSetting = "view.buffer";
 
@@ -51,9 +49,13 @@ export class Viewer {
   readonly capabilities: ServerCapabilities;
   readonly parts: SceneParts;
   readonly stream: StreamRequests;
+  readonly queries: FrameQueries;
+  readonly own: OwnSession;
+  readonly history = new UndoHistory();
+  readonly loading: SceneLoading;
+  readonly cameraMoves: CameraMoves;
   readonly scenes = new Signal<SceneList>({ scenes: [], current: null });
   readonly scene = new Signal<SceneInfo | null>(null);
-  readonly loading = new Signal<SceneProgress | null>(null);
   /** True while a whole view state is being restored. */
   readonly restoring = new Signal(false);
   readonly camera = new Signal<CameraPose | null>(null);
@@ -62,24 +64,22 @@ export class Viewer {
   readonly session = new Signal<SessionInfo | null>(null);
   /** Whether this page may change the session. */
   readonly controlState = new Signal<ControlState>({ kind: "may_change" });
+  /** What another viewer has changed last. */
+  readonly activity = new Signal<Activity | null>(null);
   readonly stats = new Signal<FrameStats | null>(null);
   readonly frame = new Signal<DrawnFrame | null>(null);
   readonly latency = new LatencyMeter();
   readonly rates = new RateMeter();
   /** Shows an error as one sentence. */
   onError: (message: string) => void = () => {};
-  /** Shows other news as one sentence. */
-  onInfo: (message: string) => void = () => {};
-  /** Moves to a pose in a visible transition. */
-  animateCameraTo: (camera: CameraPose) => void = (camera) => this.moveCamera(camera);
+  /** Shows why a scene file was not loaded. */
+  onFileError: (error: FileError) => void = () => {};
+  /** Shows other news as one sentence; newer ones of a topic replace older ones. */
+  onInfo: (message: string, topic?: string) => void = () => {};
   /** Starts or stops the clip. */
   togglePlay: () => void = () => {};
   /** Stores the current view as a bookmark. */
   addBookmark: () => void = () => {};
-  /** True while the user moves the camera; poses of other viewers are then ignored. */
-  cameraBusy: () => boolean = () => false;
-  private inputSeq = 0;
-  private progressTimer = 0;
   private animationReadAt = 0;
   private animationRev = 0;
   /** From the arrival of the server's hello until the connection is lost. */
@@ -95,6 +95,8 @@ export class Viewer {
         : null;
     const painter = offscreen ? null : new CanvasPainter(canvas);
     this.connection = new Connection(base, offscreen, {
+      prepare: () => this.own.prepare(),
+      sessionMissing: () => this.own.planReplacement(this.scene.value ? this.viewState() : null),
       live: (hello) => this.becomeLive(hello),
       notification: (method, params) => this.notified(method, params),
       drawn: (frame) => this.frameDrawn(frame),
@@ -106,12 +108,50 @@ export class Viewer {
       },
     });
     this.rpc = this.connection.rpc;
-    this.settings = new SettingsStore(this.rpc, (error) => this.report(error));
+    this.own = new OwnSession({
+      address: this.connection.address,
+      current: () => this.receivedHello?.session ?? null,
+      reconnect: () => this.changeSession(),
+      show: (view) => (this.pendingViewState = view),
+      refused: (sentence) => this.onError(sentence),
+      inform: (sentence) => this.onInfo(sentence),
+    });
+    this.loading = new SceneLoading({
+      rpc: this.rpc,
+      history: this.history,
+      viewer: () => this.receivedHello?.viewer ?? "",
+      viewState: () => (this.scene.value ? this.viewState() : null),
+      show: (view) => void this.show(view),
+      reportFile: (error) => this.onFileError(error),
+      sceneChanged: (info) => this.sceneChanged(info),
+      report: (error) => this.report(error),
+      inform: (sentence) => this.onInfo(sentence),
+    });
+    this.cameraMoves = new CameraMoves({
+      rpc: this.rpc,
+      camera: this.camera,
+      scene: this.scene,
+      latency: this.latency,
+      history: this.history,
+      moved: (camera) => {
+        if (this.pendingViewState) this.pendingViewState.camera = camera;
+      },
+      attempt: (action) => this.attempt(action),
+    });
+    this.settings = new SettingsStore(this.rpc, this.history, (error) => this.report(error));
     this.capabilities = new ServerCapabilities(this.rpc);
     this.parts = new SceneParts({
       rpc: this.rpc,
       scene: this.scene,
       capabilities: this.capabilities,
+      history: this.history,
+      loading: this.loading,
+      report: (error) => this.report(error),
+    });
+    this.queries = new FrameQueries({
+      rpc: this.rpc,
+      capabilities: this.capabilities,
+      buffer: () => String(this.settings.value(bufferSetting) ?? "output"),
       report: (error) => this.report(error),
     });
     this.sessionRestore = new SessionRestore({
@@ -121,6 +161,7 @@ export class Viewer {
       clearScene: () => this.scene.set(null),
       arrivedAt: (origin, instanceChanged) => {
         this.connection.origin = origin;
+        this.own.movedTo(origin);
         if (instanceChanged) void this.connection.persistRoute(origin);
       },
       inform: (sentence) => this.onInfo(sentence),
@@ -133,6 +174,7 @@ export class Viewer {
     this.connection.state.watch(({ kind }) => {
       if (kind === "live") return;
       this.receivedHello = null;
+      this.loading.reset();
       this.stream.end();
       // The first frames of a new connection may have another size or view.
       this.connection.hold();
@@ -147,6 +189,10 @@ export class Viewer {
 
   get mayChange(): boolean {
     return this.controlState.value.kind === "may_change";
+  }
+
+  get mayCreateSessions(): boolean {
+    return this.receivedHello?.role === "control" && this.capabilities.has("session.create");
   }
 
   /** Largest extent of the scene in metres; 1 while it is unknown. */
@@ -171,25 +217,10 @@ export class Viewer {
     };
   }
 
-  /** Restores this state, now or as soon as there is a connection. */
+  /** Restores this state in the session. */
   show(state: ViewState): Promise<void> {
     this.pendingViewState = state;
-    if (this.receivedHello) {
-      this.dropViewStateWithoutControl();
-      return this.restorePendingViewState();
-    }
-    this.connection.hold();
-    return Promise.resolve();
-  }
-
-  /** Sends an absolute pose. Call at most once per animation frame. */
-  moveCamera(camera: CameraPose): void {
-    this.camera.set(camera);
-    if (this.pendingViewState) this.pendingViewState.camera = camera;
-    this.inputSeq += 1;
-    this.latency.inputSent(this.inputSeq, clockMs());
-    const { eye, target, up, vertical_fov } = camera;
-    this.rpc.notify("camera.set", { eye, target, up, vertical_fov, seq: this.inputSeq });
+    return this.restorePendingViewState();
   }
 
   /** Takes the state of the animation, unless a newer one came before. */
@@ -199,79 +230,28 @@ export class Viewer {
     this.animation.set(animation);
   }
 
-  async selectCamera(name: string): Promise<void> {
-    await this.attempt(async () => {
-      this.inputSeq += 1;
-      this.latency.inputSent(this.inputSeq, clockMs());
-      this.camera.set(await this.rpc.request("camera.set", { name, seq: this.inputSeq }));
-    });
+  private changeSession(): void {
+    this.pendingViewState = null;
+    this.scene.set(null);
+    this.frame.set(null);
+    this.history.clear();
+    this.connection.reopen();
   }
 
-  async fitCamera(): Promise<void> {
-    if (this.pendingViewState || !this.mayChange) return;
-    await this.attempt(async () => this.camera.set(await this.rpc.request("camera.fit")));
+  undo(): void {
+    const label = this.mayChange ? this.history.undo() : null;
+    if (label) this.onInfo(`Undone: ${label}`, "history");
   }
 
-  async loadScene(name: string, part: { scene?: string; variant?: string } = {}): Promise<void> {
-    this.showProgress({ name, stage: "starting", fraction: 0 });
-    try {
-      const info = await this.rpc.request("scene.load", { name, ...part }, loadTimeoutMs);
-      await this.sceneChanged(info);
-    } catch (error) {
-      this.showProgress(null);
-      this.report(error);
-    }
-  }
-
-  /** Cancels the running load. */
-  async cancelLoad(): Promise<void> {
-    await this.attempt(() => this.rpc.request("scene.cancel"));
+  redo(): void {
+    const label = this.mayChange ? this.history.redo() : null;
+    if (label) this.onInfo(`Done again: ${label}`, "history");
   }
 
   async refreshScenes(): Promise<void> {
     await this.attempt(async () => {
       this.scenes.set(await this.rpc.request("scene.list"));
     });
-  }
-
-  /** The surface at a point, given in fractions of the image size from the top left. */
-  async pick(x: number, y: number): Promise<Pick | null> {
-    if (!this.capabilities.has("scene.pick")) return null;
-    try {
-      const pick = await this.rpc.request("scene.pick", { x, y });
-      return pick.hit ? pick : null;
-    } catch (error) {
-      this.report(error);
-      return null;
-    }
-  }
-
-  /** The surface at a point of the view, world space; null where none is known. Reports no errors. */
-  async surfaceAt(x: number, y: number): Promise<Vector3 | null> {
-    if (!this.mayChange || !this.capabilities.has("scene.pick")) return null;
-    try {
-      return (await this.rpc.request("scene.pick", { x, y })).position;
-    } catch {
-      return null;
-    }
-  }
-
-  /** A buffer of the frame as a small image, in a data URL. */
-  async captureThumbnail(buffer: string, width: number): Promise<string> {
-    const format = this.capabilities.captureFormats.value.has("jpeg") ? "jpeg" : "png";
-    const capture = await this.capture(buffer, format);
-    return thumbnailUrl(captureBlob(capture), width);
-  }
-
-  /** A buffer as a file; by default the one that is shown, converged. */
-  async capture(
-    name?: string,
-    format: FrameCaptureParams["format"] = "png",
-    samples?: number,
-  ): Promise<Capture> {
-    const buffer = name ?? String(this.settings.value(bufferSetting) ?? "output");
-    const params = samples === undefined ? { buffer, format } : { buffer, format, samples };
-    return this.rpc.request("frame.capture", params, captureTimeoutMs);
   }
 
   /** Takes or passes on control of the session, or changes its mode. */
@@ -289,9 +269,12 @@ export class Viewer {
   private async becomeLive(hello: Hello): Promise<void> {
     this.receivedHello = hello;
     this.latency.reset();
-    this.inputSeq = 0;
+    this.cameraMoves.reset();
     this.animationRev = 0;
     await this.readSession();
+    // The server refuses to close it while other viewers are in it.
+    const abandoned = this.own.takeAbandoned();
+    if (abandoned !== null) this.rpc.notify("session.close", { session: abandoned });
     this.pendingViewState = this.sessionRestore.pendingStateFor(hello, this.pendingViewState);
     this.dropViewStateWithoutControl();
     await Promise.all([
@@ -315,9 +298,7 @@ export class Viewer {
   private dropViewStateWithoutControl(): void {
     if (!this.pendingViewState || this.mayChange) return;
     this.pendingViewState = null;
-    this.onInfo(
-      `The view in the link was not applied. ${describeControl(this.controlState.value)}`,
-    );
+    this.onInfo(`Your view was not restored. ${describeControl(this.controlState.value)}`);
   }
 
   private async restorePendingViewState(): Promise<void> {
@@ -329,7 +310,8 @@ export class Viewer {
       supports: (method) => this.capabilities.has(method),
       isCurrent: () => this.receivedHello === hello && this.pendingViewState === state,
       reportSkipped: (sentence) => this.onError(sentence),
-      ownsSession: () => this.sessionRestore.ownsSession(hello),
+      reportFile: (error) => this.onFileError(error),
+      ownsSession: () => this.own.name === hello.session || this.sessionRestore.ownsSession(hello),
     };
     this.restoring.set(true);
     if (this.connection.state.value.kind !== "live") this.frame.set(null);
@@ -351,8 +333,8 @@ export class Viewer {
       const info = await this.rpc.request("scene.info");
       const camera = await this.rpc.request("camera.get");
       this.scene.set(info);
-      this.showProgress(null);
       this.camera.set(camera);
+      this.awaitFirstFrame(camera.rev);
       this.onAnimationState(await this.rpc.request("animation.list"));
     } catch (error) {
       const noScene =
@@ -384,7 +366,6 @@ export class Viewer {
   private async sceneChanged(info: SceneInfo): Promise<void> {
     // During a restore this may be an intermediate scene.
     if (this.pendingViewState) return;
-    this.showProgress(null);
     this.scene.set(info);
     this.scenes.set({ ...this.scenes.value, current: info.name });
     await this.attempt(() => this.readScene());
@@ -395,16 +376,26 @@ export class Viewer {
     this.rates.add(frame.drawnAt, frame.bytes);
     this.latency.frameDrawn(frame.inputSeqEcho, frame.drawnAt);
     if (frame.codec === Codec.h264) this.stream.onVideoFrame();
+    this.loading.frameDrawn(frame.stateRev);
     this.frame.set(frame);
   }
 
+  /** In lockstep no frame comes before the next step. */
+  private awaitFirstFrame(rev: number): void {
+    if (this.animation.value?.lockstep) this.loading.end();
+    else this.loading.takesEffect(rev);
+  }
+
   private notified(method: string, params: unknown): void {
+    const { schema } = this.settings;
+    const activity = activityOf(method, params, this.session.value, schema.value);
+    if (activity) this.activity.set(activity);
     switch (method) {
       case "settings.changed":
         this.settings.receive((params as Notifications["settings.changed"]).patch);
         break;
       case "camera.changed":
-        if (this.pendingViewState || this.cameraBusy()) break;
+        if (this.pendingViewState || this.cameraMoves.isBusy()) break;
         this.camera.set((params as Notifications["camera.changed"]).camera);
         break;
       case "animation.changed":
@@ -412,6 +403,7 @@ export class Viewer {
         this.onAnimationState((params as Notifications["animation.changed"]).animation);
         break;
       case "scene.changed":
+        this.history.dropScene();
         void this.sceneChanged((params as Notifications["scene.changed"]).scene);
         break;
       case "session.changed":
@@ -423,20 +415,11 @@ export class Viewer {
         this.parts.notified(method, params);
         break;
       case "scene.progress":
-        this.showProgress(params as Notifications["scene.progress"]);
+        this.loading.progressed(params as Notifications["scene.progress"]);
         break;
       case "stats.frame":
         this.stats.set(params as Notifications["stats.frame"]);
         break;
-    }
-  }
-
-  /** A failed load of another viewer sends no message, so the progress expires. */
-  private showProgress(progress: SceneProgress | null): void {
-    clearTimeout(this.progressTimer);
-    this.loading.set(progress);
-    if (progress) {
-      this.progressTimer = window.setTimeout(() => this.loading.set(null), progressTimeoutMs);
     }
   }
 

@@ -25,6 +25,10 @@ export type ConnectionState =
   | { kind: "forbidden"; detail: string };
 
 interface ConnectionEvents {
+  /** Before each attempt to connect; may choose the session in the address. */
+  prepare?(): Promise<void>;
+  /** The requested session does not exist; true if another one is to be prepared. */
+  sessionMissing?(): boolean;
   live(hello: Hello): Promise<void>;
   notification(method: string, params: unknown): void;
   drawn(frame: DrawnFrame): void;
@@ -106,11 +110,24 @@ export class Connection {
   open(): void {
     clearTimeout(this.retryTimer);
     this.retryTimer = 0;
-    void this.chooseRoute().then(() => {
+    void this.prepare().then(() => {
       const url = this.address.url("ws");
       url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
       this.post({ kind: "open", url: url.href, subprotocol });
     });
+  }
+
+  /** Leaves the session and connects to the one in the address. */
+  reopen(): void {
+    this.origin = null;
+    clearTimeout(this.stableTimer);
+    this.stop({ kind: "connecting" });
+    this.open();
+  }
+
+  private async prepare(): Promise<void> {
+    await this.chooseRoute();
+    await this.events.prepare?.();
   }
 
   /** On another server instance, all viewers of the previous session choose the same route. */
@@ -130,7 +147,7 @@ export class Connection {
     if (session === mainSession && (await address.fetchHello(null))?.instance === instance) {
       address.route = null; // the page's plain URL leads to this server
     }
-    history.replaceState(null, "", address.pageUrl(location.href));
+    history.replaceState(history.state, "", address.pageUrl(location.href));
   }
 
   /** A copy of the current frame; null before the first. */
@@ -240,9 +257,13 @@ export class Connection {
     const code = error instanceof RpcError ? error.code : 0;
     const requested = this.origin?.session ?? this.address.session;
     if (code === ErrorCode.notFound && requested !== undefined) {
-      this.events.warning(`Session ${requested} does not exist. This is the main session.`);
-      this.address.session = undefined;
       this.origin = null;
+      if (this.events.sessionMissing?.()) {
+        this.reopen();
+        return;
+      }
+      this.events.warning(`There is no session '${requested}'. This is the main session.`);
+      this.address.session = undefined;
       void this.startSession(subprotocol);
       return;
     }

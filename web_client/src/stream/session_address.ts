@@ -1,12 +1,19 @@
 // The address of a session: the route that leads to its server, also through a load balancer, and
 // its name there.
 
-import type { Hello } from "heliograph/messages.ts";
+import type { ErrorData, Hello, Methods } from "heliograph/messages.ts";
+import { RpcError } from "heliograph/rpc.ts";
 
 export const mainSession = "main";
 const helloTimeoutMs = 5000;
+const callTimeoutMs = 30_000;
 /** With 16 servers, this many random routes miss one of them in 2 % of cases. */
 const maxRoutesTried = 60;
+
+interface HttpAnswer<Result> {
+  result?: Result;
+  error?: { code: number; message: string; data?: Partial<ErrorData> };
+}
 
 /** A session on one instance of a server. */
 export interface SessionOrigin {
@@ -67,18 +74,32 @@ export class SessionAddress {
 
   /** The server's hello over HTTP; null where no server answers. */
   async fetchHello(route = this.route): Promise<Partial<Hello> | null> {
+    return this.call("hello", {}, { route, timeoutMs: helloTimeoutMs }).catch(() => null);
+  }
+
+  /**
+   * Calls a method over HTTP, before there is a WebSocket.
+   * @throws RpcError with the server's message; TypeError or a DOMException where none answers
+   */
+  async call<Name extends keyof Methods>(
+    method: Name,
+    params: Methods[Name]["params"],
+    { route = this.route, timeoutMs = callTimeoutMs } = {},
+  ): Promise<Methods[Name]["result"]> {
     const timeout = new AbortController();
-    const timer = setTimeout(() => timeout.abort(), helloTimeoutMs);
+    const timer = setTimeout(() => timeout.abort(), timeoutMs);
     try {
       const response = await fetch(this.url("rpc", route), {
         method: "POST",
         headers: { "content-type": "application/json" },
-        body: JSON.stringify({ jsonrpc: "2.0", id: 1, method: "hello", params: {} }),
+        body: JSON.stringify({ jsonrpc: "2.0", id: 1, method, params }),
         signal: timeout.signal,
       });
-      return ((await response.json()) as { result?: Partial<Hello> }).result ?? null;
-    } catch {
-      return null;
+      const answer = (await response.json()) as HttpAnswer<Methods[Name]["result"]>;
+      if (answer.error) {
+        throw new RpcError(answer.error.code, answer.error.message, answer.error.data);
+      }
+      return answer.result as Methods[Name]["result"];
     } finally {
       clearTimeout(timer);
     }

@@ -10,8 +10,8 @@ interface NavigationHost {
   camera(): CameraPose | null;
   /** Largest extent of the scene in metres; it limits the distance to the target. */
   sceneSize(): number;
-  /** Takes the new pose, once per animation frame. */
-  moved(camera: CameraPose): void;
+  /** Takes the new pose, once per animation frame; `recorded` as a step of the history. */
+  moved(camera: CameraPose, recorded: boolean): void;
   fit(): void;
   /** The surface at a point, in fractions of the view's width and height; null where none is. */
   surfaceAt(x: number, y: number): Promise<Vector3 | null>;
@@ -74,6 +74,8 @@ export class Navigation {
   private lastMoveAt = 0;
   private inertia = { yaw: 0, pitch: 0 };
   private shiftHeld = false;
+  /** The movement in progress is no step of the history. */
+  private unrecorded = false;
   private transition: { from: CameraPose; to: CameraPose; startedAt: number } | null = null;
 
   constructor(surface: HTMLElement, host: NavigationHost) {
@@ -105,10 +107,11 @@ export class Navigation {
   }
 
   /** Moves to a pose in a short transition; at once if the user prefers reduced motion. */
-  goTo(camera: CameraPose): void {
+  goTo(camera: CameraPose, recorded = true): void {
     const from = this.host.camera();
     if (!from) return;
     this.stopMotion();
+    this.unrecorded = !recorded;
     if (this.reducedMotion.matches) this.change(() => camera);
     else this.transition = { from, to: camera, startedAt: performance.now() };
     this.schedule();
@@ -126,6 +129,7 @@ export class Navigation {
   private stopInertia(): void {
     this.inertia = { yaw: 0, pitch: 0 };
     this.transition = null;
+    this.unrecorded = false;
   }
 
   private readonly pointerDown = (event: PointerEvent): void => {
@@ -306,7 +310,7 @@ export class Navigation {
     if (this.pendingPose) {
       const camera = this.pendingPose;
       this.pendingPose = null;
-      this.host.moved(camera);
+      this.host.moved(camera, !this.unrecorded);
     }
     if (moving || this.heldKeys.size > 0) {
       cancelAnimationFrame(this.frameRequest);

@@ -44,7 +44,7 @@ export function createBufferFields(viewer: Viewer): HTMLElement[] {
     const own = ++generation;
     for (const [name, tile] of [...tiles]) {
       if (gallery.hidden || own !== generation || !viewer.hello) return;
-      const source = await viewer.captureThumbnail(name, thumbnailWidth).catch(() => null);
+      const source = await viewer.queries.thumbnail(name, thumbnailWidth).catch(() => null);
       const image = element("img", { class: "tile-image", alt: "" });
       if (source) image.src = source;
       tile.firstElementChild?.replaceWith(image);

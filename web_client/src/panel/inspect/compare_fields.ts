@@ -7,7 +7,7 @@ import type { Divider } from "../../view/divider.ts";
 import { element, setOptions, setText } from "../../widgets/element.ts";
 import { field } from "../../widgets/field.ts";
 import { createSliderRow } from "../../widgets/slider_row.ts";
-import { presetLabel } from "../settings/preset_labels.ts";
+import { presetLabel } from "../../common/labels.ts";
 import { bufferLabel } from "./buffer_fields.ts";
 
 const none = "";

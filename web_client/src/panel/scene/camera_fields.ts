@@ -20,7 +20,7 @@ export function createCameraFields(viewer: Viewer): HTMLElement[] {
           { class: "chip removable" },
           element(
             "button",
-            { type: "button", click: () => viewer.animateCameraTo(camera), "data-bookmark": name },
+            { type: "button", click: () => viewer.cameraMoves.animateTo(camera), "data-bookmark": name },
             name,
           ),
           element(
@@ -48,7 +48,7 @@ export function createCameraFields(viewer: Viewer): HTMLElement[] {
     show();
   };
   viewer.scene.watch(show);
-  const fit = button("Fit the scene into view (F)", "fit", () => void viewer.fitCamera());
+  const fit = button("Fit the scene into view (F)", "fit", () => void viewer.cameraMoves.fit());
   const bookmark = button("Bookmark this view (B)", "bookmark", add);
   viewer.addBookmark = add;
   return [field("Camera", cameraPicker(viewer), fit, bookmark), chips];
@@ -58,7 +58,7 @@ function cameraPicker(viewer: Viewer): HTMLSelectElement {
   const select = element("select", {
     name: "camera",
     change: () => {
-      if (select.value !== freeView) void viewer.selectCamera(select.value);
+      if (select.value !== freeView) void viewer.cameraMoves.select(select.value);
     },
   });
   const update = (): void => {

@@ -9,7 +9,7 @@ const withScene = "";
 export function createEnvironmentField(parts: SceneParts): HTMLElement {
   const select = element("select", {
     name: "environment",
-    change: () => void parts.chooseEnvironment(select.value || null),
+    change: () => parts.chooseEnvironment(select.value || null),
   });
   const node = field("Environment", select);
   parts.environment.watch((state) => {

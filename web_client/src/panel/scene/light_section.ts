@@ -26,7 +26,7 @@ export function createLightSection(parts: SceneParts): HTMLElement {
   });
   const reset = button("Reset this light", "reset", () => {
     const light = selected();
-    if (light) void parts.resetLight(light.name);
+    if (light) parts.resetLight(light.name);
   });
   const dial = createSunDial("Direction of the sun", (direction) => patch({ direction }));
   const diameter = createSliderRow(

@@ -48,7 +48,7 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
   });
   const reset = button("Reset this material", "reset", () => {
     const material = selected();
-    if (material) void parts.resetMaterial(material.name);
+    if (material) parts.resetMaterial(material.name);
   });
   const sweep = createSweep(
     (value) => patch({ roughness: value }),

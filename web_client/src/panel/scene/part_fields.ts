@@ -10,7 +10,7 @@ export function createPartFields(viewer: Viewer): HTMLElement[] {
   const load = (): void => {
     const current = viewer.scene.value;
     if (!current) return;
-    void viewer.loadScene(current.name, {
+    void viewer.loading.load(current.name, {
       scene: parts.value || undefined,
       variant: variants.value || undefined,
     });

@@ -46,7 +46,7 @@ function createGallery(viewer: Viewer): HTMLElement {
 function createTile(viewer: Viewer, name: string): HTMLElement {
   return element(
     "button",
-    { type: "button", class: "tile", click: () => void viewer.loadScene(name) },
+    { type: "button", class: "tile", click: () => void viewer.loading.load(name) },
     thumbnail(thumbnailOf(name)),
     element("span", { class: "tile-name" }, name),
   );
@@ -69,7 +69,8 @@ function fileButton(viewer: Viewer, upload: (file: File) => void): HTMLElement {
       input.value = "";
     },
   });
-  const opener = button("Upload a .glb file", "upload", () => input.click());
+  const opener = button("Upload", "upload", () => input.click());
+  opener.dataset.tip = "Upload a scene file (.glb)";
   opener.hidden = true;
   viewer.connection.state.watch((state) => {
     if (state.kind === "live") opener.hidden = !state.hello.limits.max_upload_bytes;
@@ -80,12 +81,12 @@ function fileButton(viewer: Viewer, upload: (file: File) => void): HTMLElement {
 function sceneList(viewer: Viewer): HTMLSelectElement {
   const select = element("select", {
     name: "scene",
-    change: () => void viewer.loadScene(select.value),
+    change: () => void viewer.loading.load(select.value),
     focus: () => void viewer.refreshScenes(),
   });
   const update = (): void => {
     const { scenes, current } = viewer.scenes.value;
-    const loading = viewer.loading.value;
+    const loading = viewer.loading.current.value;
     const options = scenes.map(({ name }) => ({ value: name, label: name }));
     if (scenes.length === 0) {
       options.push({ value: "", label: viewer.hello ? "No scenes found" : "–" });
@@ -97,7 +98,7 @@ function sceneList(viewer: Viewer): HTMLSelectElement {
     select.disabled = loading !== null || scenes.length === 0;
   };
   viewer.scenes.watch(update);
-  viewer.loading.watch(update);
+  viewer.loading.current.watch(update);
   viewer.connection.state.watch(update);
   return select;
 }

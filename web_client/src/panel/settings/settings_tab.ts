@@ -2,9 +2,9 @@
 
 import type { JsonObject } from "heliograph/json.ts";
 import type { Viewer } from "../../session/viewer.ts";
-import { button, element, icon, setText } from "../../widgets/element.ts";
+import { element, icon, setText } from "../../widgets/element.ts";
 import { requiresControl } from "../../widgets/requires_control.ts";
-import { presetLabel } from "./preset_labels.ts";
+import { presetLabel } from "../../common/labels.ts";
 import { mountSettings } from "./settings_sections.ts";
 
 interface Preset {
@@ -38,21 +38,12 @@ export function createSettingsTab(viewer: Viewer, shownElsewhere: string[]): HTM
     noResults.hidden = mounted.filter(search.value) > 0;
     setText(noResults, "No matching settings.");
   };
-  const { settings } = viewer;
-  const undo = button("Undo (Ctrl Z)", "undo", () => settings.undo());
-  const redo = button("Redo (Ctrl Shift Z)", "redo", () => settings.redo());
-  const enable = (): void => {
-    undo.disabled = !viewer.mayChange || !settings.history.canUndo;
-    redo.disabled = !viewer.mayChange || !settings.history.canRedo;
-  };
-  settings.tree.watch(enable);
-  viewer.controlState.watch(enable);
   const searchBox = element("div", { class: "search" }, icon("search"), search);
   return element(
     "div",
     { class: "settings-tab" },
     requiresControl(viewer, createPresetChips(viewer)),
-    element("div", { class: "toolbar" }, searchBox, undo, redo),
+    element("div", { class: "toolbar" }, searchBox),
     noResults,
     requiresControl(viewer, sections),
   );

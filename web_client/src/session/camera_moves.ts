@@ -1,0 +1,90 @@
+// Movements of the session's camera by this page, and their steps in the history.
+
+import type { SceneInfo } from "heliograph/messages.ts";
+import type { RpcPeer } from "heliograph/rpc.ts";
+import type { CameraPose } from "../common/camera_pose.ts";
+import type { Signal } from "../common/signal.ts";
+import type { LatencyMeter } from "../stream/latency.ts";
+import { clockMs } from "../stream/worker_messages.ts";
+import type { UndoHistory } from "./undo_history.ts";
+
+interface CameraMovesHost {
+  rpc: RpcPeer;
+  camera: Signal<CameraPose | null>;
+  scene: Signal<SceneInfo | null>;
+  latency: LatencyMeter;
+  history: UndoHistory;
+  /** The user has moved the camera. */
+  moved(camera: CameraPose): void;
+  attempt(action: () => Promise<unknown>): Promise<void>;
+}
+
+export class CameraMoves {
+  /** Moves to a pose in a visible transition; `recorded` as a step of the history. */
+  animateTo: (camera: CameraPose, recorded?: boolean) => void = (camera, recorded) =>
+    this.moveTo(camera, recorded);
+  /** True while the user moves the camera; poses of other viewers are then ignored. */
+  isBusy: () => boolean = () => false;
+  private readonly host: CameraMovesHost;
+  private inputSeq = 0;
+
+  constructor(host: CameraMovesHost) {
+    this.host = host;
+  }
+
+  /** A new connection counts inputs from the start. */
+  reset(): void {
+    this.inputSeq = 0;
+  }
+
+  /** Sends an absolute pose. Call at most once per animation frame. */
+  moveTo(camera: CameraPose, recorded = true): void {
+    if (recorded) this.remember(camera);
+    this.host.camera.set(camera);
+    this.host.moved(camera);
+    const { eye, target, up, vertical_fov } = camera;
+    this.host.rpc.notify("camera.set", { eye, target, up, vertical_fov, seq: this.nextInput() });
+  }
+
+  /** Selects a camera of the scene. */
+  async select(name: string, recorded = true): Promise<void> {
+    await this.host.attempt(async () => {
+      const camera = await this.host.rpc.request("camera.set", { name, seq: this.nextInput() });
+      this.arrive(camera, recorded);
+    });
+  }
+
+  async fit(): Promise<void> {
+    await this.host.attempt(async () => this.arrive(await this.host.rpc.request("camera.fit")));
+  }
+
+  private arrive(camera: CameraPose, recorded = true): void {
+    if (recorded) this.remember(camera);
+    this.host.camera.set(camera);
+  }
+
+  private nextInput(): number {
+    this.inputSeq += 1;
+    this.host.latency.inputSent(this.inputSeq, clockMs());
+    return this.inputSeq;
+  }
+
+  private remember(camera: CameraPose): void {
+    const before = this.host.camera.value;
+    if (!before) return;
+    this.host.history.add({
+      label: "camera",
+      key: "camera",
+      ofScene: true,
+      undo: () => this.returnTo(before),
+      redo: () => this.returnTo(camera),
+    });
+  }
+
+  private returnTo(camera: CameraPose): void {
+    const { name } = camera;
+    const named = name !== null && this.host.scene.value?.cameras.includes(name);
+    if (named) void this.select(name, false);
+    else this.animateTo(camera, false);
+  }
+}

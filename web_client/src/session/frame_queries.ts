@@ -1,0 +1,63 @@
+// Questions about the frame: files of it, and the surface at a point.
+
+import type { Vector3 } from "heliograph/json.ts";
+import type { Capture, FrameCaptureParams, Pick } from "heliograph/messages.ts";
+import type { RpcPeer } from "heliograph/rpc.ts";
+import { captureBlob, thumbnailUrl } from "../common/image_files.ts";
+import type { ServerCapabilities } from "./server_capabilities.ts";
+
+const captureTimeoutMs = 120_000;
+
+interface FrameQueriesHost {
+  rpc: RpcPeer;
+  capabilities: ServerCapabilities;
+  /** The buffer that is shown. */
+  buffer(): string;
+  report(error: unknown): void;
+}
+
+export class FrameQueries {
+  private readonly host: FrameQueriesHost;
+
+  constructor(host: FrameQueriesHost) {
+    this.host = host;
+  }
+
+  /** The surface at a point, given in fractions of the image size from the top left. */
+  async pick(x: number, y: number): Promise<Pick | null> {
+    if (!this.host.capabilities.has("scene.pick")) return null;
+    try {
+      const pick = await this.host.rpc.request("scene.pick", { x, y });
+      return pick.hit ? pick : null;
+    } catch (error) {
+      this.host.report(error);
+      return null;
+    }
+  }
+
+  /** The surface at a point of the view, world space; null where none is known. Reports no errors. */
+  async surfaceAt(x: number, y: number): Promise<Vector3 | null> {
+    if (!this.host.capabilities.has("scene.pick")) return null;
+    try {
+      return (await this.host.rpc.request("scene.pick", { x, y })).position;
+    } catch {
+      return null;
+    }
+  }
+
+  /** A buffer as a file; by default the one that is shown, converged. */
+  async capture(
+    buffer = this.host.buffer(),
+    format: FrameCaptureParams["format"] = "png",
+    samples?: number,
+  ): Promise<Capture> {
+    const params = samples === undefined ? { buffer, format } : { buffer, format, samples };
+    return this.host.rpc.request("frame.capture", params, captureTimeoutMs);
+  }
+
+  /** A buffer of the frame as a small image, in a data URL. */
+  async thumbnail(buffer: string, width: number): Promise<string> {
+    const format = this.host.capabilities.captureFormats.value.has("jpeg") ? "jpeg" : "png";
+    return thumbnailUrl(captureBlob(await this.capture(buffer, format)), width);
+  }
+}
