@@ -66,6 +66,7 @@ struct SessionCreate {
   std::optional<std::uint32_t> height;
   std::optional<RawJson> settings;
   std::optional<std::string> copy_of;
+  std::optional<std::uint32_t> idle_timeout;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -87,6 +88,12 @@ struct SessionCreate {
         field("copy_of", &SessionCreate::copy_of,
               "A session from which scene, camera, clip, settings and size are copied.")
             .length(1, max_session_name),
+        field(
+            "idle_timeout", &SessionCreate::idle_timeout,
+            "Time without viewers and calls after which the session ends; at most, and if absent, "
+            "the server's.")
+            .range(1, max_idle_timeout)
+            .unit("seconds"),
     };
   }
   bool operator==(const SessionCreate&) const = default;

@@ -99,6 +99,11 @@ export interface SessionCreateParams {
   copy_of?: string;
   /** Frame height. [pixels] */
   height?: number;
+  /**
+   * Time without viewers and calls after which the session ends; at most, and if absent, the
+   * server's. [seconds]
+   */
+  idle_timeout?: number;
   /** Letters, digits, dots, hyphens and underscores; absent: the server chooses. */
   name?: string;
   /** A name from scene.list; the call returns when the scene is loaded. */

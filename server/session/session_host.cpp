@@ -67,13 +67,11 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
   dispatcher_.on_handler_failure([](std::string_view method, std::string_view reason) {
     spdlog::error("{} failed: {}", method, reason);
   });
-  if (options_.limits.idle_timeout.count() > 0) {
-    idle_thread_ = std::thread([this] { close_idle_sessions(); });
-  }
+  idle_thread_ = std::thread([this] { close_idle_sessions(); });
 }
 
 void SessionHost::close_idle_sessions() {
-  while (!stopping_) stop_idle_thread_.wait_until(Clock::now() + sessions_.close_idle());
+  while (!stopping_) idle_check_.wait_until(Clock::now() + sessions_.close_idle());
 }
 
 SessionHost::~SessionHost() {
@@ -82,7 +80,7 @@ SessionHost::~SessionHost() {
 
 void SessionHost::stop() {
   stopping_ = true;
-  stop_idle_thread_.notify();
+  idle_check_.notify();
   if (idle_thread_.joinable()) idle_thread_.join();
   loader_.stop();
   environments_.stop();
@@ -102,10 +100,12 @@ void SessionHost::create_session(const protocol::SessionCreate& request, const s
     options.width = info.width;
     options.height = info.height;
   }
+  options.limits.idle_timeout = std::chrono::seconds(request.idle_timeout.value_or(0));
   options.width = request.width.value_or(options.width);
   options.height = request.height.value_or(options.height);
   const auto created = sessions_.create(std::move(options));
   if (!created) return done(created.error());
+  idle_check_.notify();
   const std::shared_ptr<Session>& session = *created;
   session->set_buffers(model->buffers());
   if (request.copy_of) session->copy_from(*model);

@@ -87,7 +87,7 @@ class SessionHost {
   protocol::Dispatcher dispatcher_;
   SceneLoader loader_;
   EnvironmentLibrary environments_;
-  WakeEvent stop_idle_thread_;
+  WakeEvent idle_check_;
   std::atomic<bool> stopping_ = false;
   std::thread idle_thread_;
 };

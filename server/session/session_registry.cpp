@@ -84,11 +84,11 @@ protocol::Error SessionRegistry::main_always_exists() {
 
 Clock::duration SessionRegistry::close_idle() {
   const std::lock_guard lock(mutex_);
-  const Clock::duration timeout = limits_.idle_timeout;
-  Clock::duration next = timeout;
+  Clock::duration next = std::chrono::hours(1);
   std::vector<std::shared_ptr<Session>> idle;
   for (const auto& [name, session] : sessions_) {
-    if (session == main_) continue;
+    const Clock::duration timeout = idle_timeout_of(*session);
+    if (session == main_ || timeout == Clock::duration::zero()) continue;
     const Clock::duration left = timeout - session->idle();
     if (left <= Clock::duration::zero()) {
       idle.push_back(session);
@@ -98,6 +98,14 @@ Clock::duration SessionRegistry::close_idle() {
   }
   for (const auto& session : idle) end(session, "the session was idle");
   return next;
+}
+
+/// The shorter of the server's timeout and the session's own; zero: it never ends by itself.
+std::chrono::seconds SessionRegistry::idle_timeout_of(const Session& session) const {
+  const std::chrono::seconds own = session.limits().idle_timeout;
+  const std::chrono::seconds general = limits_.idle_timeout;
+  if (own.count() == 0 || general.count() == 0) return std::max(own, general);
+  return std::min(own, general);
 }
 
 void SessionRegistry::end(const std::shared_ptr<Session>& session, const std::string& reason) {

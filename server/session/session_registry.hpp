@@ -98,6 +98,7 @@ class SessionRegistry {
   bool is_available(const std::string& viewer, const std::string& name) const;
   std::string resumed_name(const Origin& from);
   protocol::Result<std::shared_ptr<Session>> find_locked(std::string_view name) const;
+  std::chrono::seconds idle_timeout_of(const Session& session) const;
   void end(const std::shared_ptr<Session>& session, const std::string& reason);
   std::string generated_name();
 

@@ -337,6 +337,7 @@ class Session(_Group):
             *,
             copy_of: str = _UNSET,
             height: int = _UNSET,
+            idle_timeout: int = _UNSET,
             name: str = _UNSET,
             scene: str = _UNSET,
             settings: Dict[str, Any] = _UNSET,
@@ -345,6 +346,8 @@ class Session(_Group):
 
         copy_of: A session from which scene, camera, clip, settings and size are copied.
         height: Frame height. [pixels]
+        idle_timeout: Time without viewers and calls after which the session ends; at most, and
+            if absent, the server's. [seconds]
         name: Letters, digits, dots, hyphens and underscores; absent: the server chooses.
         scene: A name from scene.list; the call returns when the scene is loaded.
         settings: A merge patch of the settings tree (RFC 7386), applied to the server's
@@ -354,8 +357,8 @@ class Session(_Group):
         Returns: control, height, idle_seconds, name, rev, scene, viewers, width.
         """
         return self._call("session.create", _given({
-            "copy_of": copy_of, "height": height, "name": name, "scene": scene,
-            "settings": settings, "width": width}))
+            "copy_of": copy_of, "height": height, "idle_timeout": idle_timeout,
+            "name": name, "scene": scene, "settings": settings, "width": width}))
 
     def join(self, *, session: str) -> Dict[str, Any]:
         """Moves this viewer and its stream to another session.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -12,7 +13,8 @@ struct SessionLimits {
   std::uint32_t max_width = 3840;
   std::uint32_t max_height = 2160;
   std::size_t max_viewers = 32;
-  std::size_t max_captures = 32;  // unanswered; as many probes and as many steps beside them
+  std::size_t max_captures = 32;         // unanswered; as many probes and as many steps beside them
+  std::chrono::seconds idle_timeout{0};  // zero: the server's; the shorter of both counts
 };
 
 struct SessionOptions {

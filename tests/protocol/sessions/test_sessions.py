@@ -261,6 +261,14 @@ class Sessions(ServerTestCase):
 class IdleSessions(ServerTestCase):
     arguments = ("--session-idle-timeout", "3")
 
+    def test_a_session_with_a_short_idle_timeout_is_closed_sooner(self):
+        names = lambda: {one["name"] for one in self.server.call("session.list")["sessions"]}
+        self.server.call("session.create", {"name": "long", "idle_timeout": 600})
+        self.server.call("session.create", {"name": "short", "idle_timeout": 1})
+        self.server.wait_for(lambda: "short" not in names(), "the end of short", timeout=2)
+        self.assertIn("long", names())
+        self.server.wait_for(lambda: "long" not in names(), "the end of long", timeout=5)
+
     async def test_an_idle_session_is_closed(self):
         for name in ("watched", "called", "idle", "stepped"):
             self.server.call("session.create", {"name": name, "copy_of": "main"})

@@ -53,7 +53,11 @@ export class Comparison {
       const { rpc, parts, hello } = this.viewer;
       const source = hello?.session ?? "main";
       const copied = parts.edits();
-      const { name } = await rpc.request("session.create", { copy_of: source }, createTimeoutMs);
+      const { name } = await rpc.request(
+        "session.create",
+        { copy_of: source, idle_timeout: 60 },
+        createTimeoutMs,
+      );
       if (generation !== this.generation) {
         rpc.notify("session.close", { session: name });
         return;

@@ -8,6 +8,9 @@ import { Signal } from "../common/signal.ts";
 import { type SessionAddress, type SessionOrigin, mainSession } from "../stream/session_address.ts";
 import type { ViewState } from "./view_state.ts";
 
+/** How long the session outlives its page: for a reload or a lost connection. */
+const idleSeconds = 120;
+
 /** Kept in the entry of the browser's history, so that a reload returns to the session. */
 interface OwnRecord extends SessionOrigin {
   /** The shared session beside it. */
@@ -132,12 +135,16 @@ export class OwnSession {
   }
 
   private async create({ view, copyOf, shared }: Plan, instance: string): Promise<void> {
+    const idle_timeout = idleSeconds;
     const created = await this.host.address
-      .call("session.create", copyOf === undefined ? {} : { copy_of: copyOf })
+      .call(
+        "session.create",
+        copyOf === undefined ? { idle_timeout } : { copy_of: copyOf, idle_timeout },
+      )
       .catch((error: unknown) => {
         const gone = error instanceof RpcError && error.code === ErrorCode.notFound;
         if (!gone || view?.scene === undefined) throw error;
-        return this.host.address.call("session.create", {});
+        return this.host.address.call("session.create", { idle_timeout });
       });
     this.enter({ instance, session: created.name, shared });
     if (view && (view.scene !== undefined || created.scene !== null)) this.host.show(view);
