@@ -1,7 +1,17 @@
 // Comparison of two sessions, side by side or overlaid.
 
 import assert from "node:assert/strict";
-import { distance, dragView, eventually, openTab, screenshot } from "./harness/browser.mjs";
+import { seriousFindings } from "./harness/axe.mjs";
+import {
+  distance,
+  dragView,
+  eventually,
+  openTab,
+  screenshot,
+  settle,
+  viewScreenshot,
+} from "./harness/browser.mjs";
+import { statistics, thumbnail } from "./harness/images.mjs";
 import { Stage } from "./harness/stage.mjs";
 
 const stage = new Stage({
@@ -36,7 +46,7 @@ stage.test("comparing a preset opens a second session that follows the camera", 
   const similarity = await eventually(
     async () => {
       const text = await page.locator("[data-figure-of=similarity]").textContent();
-      const figure = Number(/SSIM ([\d.]+)/.exec(text)?.[1]);
+      const figure = Number(/SSIM\) ([\d.]+)/.exec(text)?.[1]);
       // The first measurements compare frames before and after the move.
       return figure > 0.5 && figure;
     },
@@ -122,6 +132,78 @@ stage.test("the second session follows light, material, environment, size and sc
   await eventually(async () => (await kernelOf(next.name)) === "full", "the preset again");
   assert.equal(await select.inputValue(), "preset:svgf");
   await server.call("scene.load", { name: "shadow_objects" });
+});
+
+stage.test(
+  "a comparison says what it prepares, and shows no figure before it means something",
+  async (t) => {
+    if (await stage.lacks(t, "session.create")) return;
+    const { page } = await stage.watch();
+    await openTab(page, "inspect");
+    const facts = page.locator("[data-figure-of=similarity]");
+    await facts.evaluate((node) => {
+      window.told = [];
+      new MutationObserver(() => window.told.push(node.textContent)).observe(node, {
+        childList: true,
+        characterData: true,
+        subtree: true,
+      });
+    });
+    await page.locator("select[name=compare]").selectOption("reference");
+    await facts.getByText("SSIM").waitFor({ timeout: 90_000 });
+    await dragView(page, { x: 150, y: 250 }, { x: 200, y: 260 });
+    await facts.getByText("Preparing").waitFor();
+    await facts.getByText("SSIM").waitFor({ timeout: 90_000 });
+    const told = await page.evaluate(() => window.told);
+    assert.match(told[0], /^Preparing/);
+    for (const text of told.filter((one) => one.includes("SSIM"))) {
+      const samples = Number(/with (\d+) samples/.exec(text)?.[1]);
+      assert.ok(samples >= stage.samples, text);
+    }
+  },
+);
+
+stage.test("two frames are shown side by side, or their difference", async (t) => {
+  if (await stage.lacks(t, "session.create")) return;
+  const { page } = await stage.watch({ viewport: { width: 1200, height: 500 } });
+  await settle(page, stage.server);
+  const lightness = async (name) =>
+    statistics(await thumbnail(page, await viewScreenshot(page, name))).mean;
+  const plain = await lightness("compare_plain");
+  await openTab(page, "inspect");
+  await page.locator("select[name=compare]").selectOption("preset:svgf");
+  const facts = page.locator("[data-figure-of=similarity]");
+  await facts.getByText("SSIM").waitFor({ timeout: 60_000 });
+  const layout = page.locator("select[name=compare_mode]");
+  await layout.selectOption("difference");
+  await page.locator(".second-label", { hasText: "Difference to" }).waitFor();
+  const difference = await lightness("compare_difference");
+  assert.ok(difference < 0.5 * plain, `a difference of ${difference}, the frame has ${plain}`);
+
+  await layout.selectOption("side");
+  await page.locator(".second-label", { hasText: /^Preset SVGF$/ }).waitFor();
+  const [first, second, panel] = await Promise.all(
+    ["#view", ".second", "#panel"].map((selector) => page.locator(selector).boundingBox()),
+  );
+  assert.ok(Math.abs(first.width - second.width) <= 1, `${first.width} and ${second.width}`);
+  assert.ok(Math.abs(first.x + first.width - second.x) <= 1, "the halves are apart");
+  assert.ok(second.x + second.width <= panel.x, "the panel covers the second frame");
+  const { name } = await eventually(otherSession, "a second session");
+  await eventually(async () => {
+    const [here, there] = [
+      await stage.server.call("session.info"),
+      await stage.server.call("session.info", {}, name),
+    ];
+    return here.width < 500 && there.width === here.width;
+  }, "both sessions to render half of the view");
+  await facts.getByText("SSIM").waitFor({ timeout: 60_000 });
+  await screenshot(page, "compare_side");
+  assert.deepEqual(await seriousFindings(page), []);
+  await page.locator("select[name=compare]").selectOption("");
+  await eventually(
+    async () => (await page.locator("#view").boundingBox()).width > 1000,
+    "the whole view again",
+  );
 });
 
 stage.test("a history buffer is overlaid", async (t) => {

@@ -7,11 +7,15 @@ import { type Edits, editsBetween } from "../session/scene_edits.ts";
 import type { Viewer } from "../session/viewer.ts";
 import { Connection } from "../stream/connection.ts";
 import { SessionAddress } from "../stream/session_address.ts";
-import type { ComparisonState, Counterpart } from "./comparison_state.ts";
+import type { DrawnFrame } from "../stream/worker_messages.ts";
+import { type ComparisonState, type Counterpart, samplesNeeded } from "./comparison_state.ts";
 
 /** Settings that both sessions share: how a frame is displayed, not how it is rendered. */
 const sharedGroups = ["exposure", "tone_map", "environment"];
 const measureMs = 1000;
+/** After a change, frames of before it may still be on their way. */
+const settleMs = 700;
+export const maxSamplesSetting = "accumulation.max_samples";
 
 interface ComparedStart {
   counterpart: Counterpart;
@@ -35,6 +39,11 @@ export class ComparedSession {
   private readonly timer: number;
   private measuring = false;
   private live = false;
+  private frame: DrawnFrame | null = null;
+  /** The revision from which on frames are rendered in the other way. */
+  private firstRev = Infinity;
+  private changedAt = 0;
+  private ended = false;
   private lights: Edits;
   private materials: Edits;
   /** The last message of each kind, so that only changes are sent. */
@@ -50,7 +59,7 @@ export class ComparedSession {
     this.viewer = viewer;
     this.name = name;
     this.events = events;
-    this.state = { counterpart, frame: null, similarity: null };
+    this.state = { counterpart, samples: null, similarity: null };
     this.lights = copied.lights ?? {};
     this.materials = copied.materials ?? {};
     this.connection = new Connection(
@@ -60,8 +69,8 @@ export class ComparedSession {
         live: (hello) => this.becomeLive(hello),
         notification: () => {},
         drawn: (frame) => {
-          this.state.frame = frame;
-          this.changed();
+          this.frame = frame;
+          this.update();
         },
         draw: (image) => image.close(),
         warning: (message) => viewer.onError(message),
@@ -72,10 +81,11 @@ export class ComparedSession {
     this.connection.state.watch(({ kind }) => {
       if (kind !== "live") this.live = false;
     });
+    viewer.frame.watch(() => this.update());
     this.connection.open();
     this.worker.onmessage = ({ data }: MessageEvent<{ similarity: number }>) => {
       this.measuring = false;
-      this.state.similarity = data.similarity;
+      if (this.hasEnoughSamples()) this.state.similarity = data.similarity;
       this.changed();
     };
     this.timer = window.setInterval(() => void this.measure(), measureMs);
@@ -91,6 +101,7 @@ export class ComparedSession {
   }
 
   end(): void {
+    this.ended = true;
     clearInterval(this.timer);
     this.worker.terminate();
     // Other viewers cannot close a session that has viewers. If this fails, it ends by its idle
@@ -99,6 +110,24 @@ export class ComparedSession {
       .request("session.close", { session: this.name })
       .catch(() => {})
       .finally(() => this.connection.dispose());
+  }
+
+  /** Counts the samples that both frames have. */
+  private update(): void {
+    if (this.ended) return;
+    const own = this.viewer.frame.value;
+    const { frame } = this;
+    const same = own !== null && frame !== null && frame.stateRev >= this.firstRev;
+    this.state.samples = same ? Math.min(own.samples, frame.samples) : null;
+    if (!this.hasEnoughSamples()) this.state.similarity = null;
+    this.changed();
+  }
+
+  private hasEnoughSamples(): boolean {
+    const most = Number(this.viewer.settings.value(maxSamplesSetting) ?? 1);
+    const needed = samplesNeeded(this.state.counterpart, most);
+    const settled = performance.now() - this.changedAt >= settleMs;
+    return settled && this.state.samples !== null && this.state.samples >= needed;
   }
 
   private changed(): void {
@@ -113,13 +142,13 @@ export class ComparedSession {
     const { rpc } = this.connection;
     const { counterpart } = this.state;
     if (counterpart.kind === "preset") {
-      await rpc.request("settings.preset", { name: counterpart.name });
+      this.firstRev = (await rpc.request("settings.preset", { name: counterpart.name })).rev;
     } else {
       const patch: JsonObject =
         counterpart.kind === "reference"
           ? { reference: { use: "always" } }
           : { view: { buffer: counterpart.name } };
-      await rpc.request("settings.patch", { patch });
+      this.firstRev = (await rpc.request("settings.patch", { patch })).rev;
     }
     this.sent.clear();
     this.live = true;
@@ -187,6 +216,7 @@ export class ComparedSession {
     if (!this.live) return false;
     const text = JSON.stringify(message);
     if (this.sent.get(kind) === text) return false;
+    this.changedAt = performance.now();
     this.sent.set(kind, text);
     return true;
   }
@@ -200,7 +230,8 @@ export class ComparedSession {
   }
 
   private async measure(): Promise<void> {
-    if (this.measuring || !this.state.frame || this.state.counterpart.kind === "buffer") return;
+    if (this.measuring || this.state.counterpart.kind === "buffer") return;
+    if (!this.hasEnoughSamples()) return;
     const frames = await Promise.all([
       this.viewer.connection.copyFrame(),
       this.connection.copyFrame(),

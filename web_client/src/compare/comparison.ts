@@ -48,7 +48,7 @@ export class Comparison {
     this.end();
     const generation = this.generation;
     const canvas = this.newCanvas();
-    this.state.set({ counterpart, frame: null, similarity: null });
+    this.state.set({ counterpart, samples: null, similarity: null });
     try {
       const { rpc, parts, hello } = this.viewer;
       const source = hello?.session ?? "main";

@@ -1,13 +1,22 @@
-// The divider between two overlaid frames, moved by dragging or by keys.
+// Two frames in one view: a divider between them, moved by dragging or by keys, both side by side,
+// their difference, or one transparently over the other.
 
 import { element, icon } from "../widgets/element.ts";
 
 const keyStep = 2; // percent
 const largeStep = 10;
 
+export type CompareMode = "wipe" | "side" | "difference" | "overlay";
+
+interface CompareLook {
+  /** Of the upper frame, for "overlay". */
+  opacity: number;
+  /** Factor on the difference. */
+  gain: number;
+}
+
 export interface Divider {
-  /** Shows the second frame right of the divider, or transparently over all of the first. */
-  setMode(mode: "split" | "overlay", opacity: number): void;
+  setMode(mode: CompareMode, look: CompareLook): void;
   newCanvas(): HTMLCanvasElement;
   show(shown: boolean, label: string): void;
 }
@@ -15,8 +24,10 @@ export interface Divider {
 export function createDivider(root: HTMLElement): Divider {
   let canvas = element("canvas", { class: "second", "aria-hidden": "true" });
   let position = 50;
-  let mode: "split" | "overlay" = "split";
-  let overlayOpacity = 1;
+  let mode: CompareMode = "wipe";
+  let shownText = "";
+  let look: CompareLook = { opacity: 1, gain: 1 };
+  const amplifier = element("div", { class: "amplifier" });
   const label = element("span", { class: "second-label" });
   const first = element("span", { class: "first-label" }, "This session");
   const handle = element("span", { class: "divider-handle" }, icon("code"));
@@ -49,16 +60,21 @@ export function createDivider(root: HTMLElement): Divider {
     },
     handle,
   );
-  root.append(canvas, line, first, label);
+  root.append(canvas, amplifier, line, first, label);
   const draw = (): void => {
-    const split = mode === "split";
-    canvas.style.clipPath = split ? `inset(0 0 0 ${position}%)` : "";
-    canvas.style.opacity = split ? "" : String(overlayOpacity);
-    line.hidden = !split;
-    first.hidden = !split;
+    const wipes = mode === "wipe";
+    root.dataset.mode = mode;
+    // The first frame takes half of the view, too.
+    root.parentElement?.classList.toggle("side-by-side", mode === "side" && !root.hidden);
+    canvas.style.clipPath = wipes ? `inset(0 0 0 ${position}%)` : "";
+    canvas.style.opacity = mode === "overlay" ? String(look.opacity) : "";
+    amplifier.style.backdropFilter = `brightness(${look.gain})`;
+    label.textContent = mode === "difference" ? `Difference to ${shownText}` : shownText;
+    line.hidden = !wipes;
+    first.hidden = !wipes && mode !== "side";
     line.style.left = `${position}%`;
-    first.style.right = `${100 - position}%`;
-    label.style.left = split ? `${position}%` : "0";
+    first.style.right = wipes ? `${100 - position}%` : "";
+    label.style.left = wipes ? `${position}%` : "";
     line.setAttribute("aria-valuenow", position.toFixed(0));
   };
   const set = (percent: number): void => {
@@ -67,9 +83,9 @@ export function createDivider(root: HTMLElement): Divider {
   };
   draw();
   return {
-    setMode(next, opacity) {
+    setMode(next, nextLook) {
       mode = next;
-      overlayOpacity = opacity;
+      look = nextLook;
       draw();
     },
     newCanvas() {
@@ -81,7 +97,8 @@ export function createDivider(root: HTMLElement): Divider {
     },
     show(shown, text) {
       root.hidden = !shown;
-      label.textContent = text;
+      shownText = text;
+      draw();
     },
   };
 }

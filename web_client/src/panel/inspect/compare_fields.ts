@@ -1,9 +1,10 @@
 // Selects what to compare with and shows the similarity.
 
 import type { Comparison } from "../../compare/comparison.ts";
-import type { Counterpart } from "../../compare/comparison_state.ts";
+import { maxSamplesSetting } from "../../compare/compared_session.ts";
+import { type Counterpart, describeComparison } from "../../compare/comparison_state.ts";
 import type { Viewer } from "../../session/viewer.ts";
-import type { Divider } from "../../view/divider.ts";
+import type { CompareMode, Divider } from "../../view/divider.ts";
 import { element, setOptions, setText } from "../../widgets/element.ts";
 import { field } from "../../widgets/field.ts";
 import { createSliderRow } from "../../widgets/slider_row.ts";
@@ -23,7 +24,9 @@ export function createCompareFields(
   const mode = element(
     "select",
     { name: "compare_mode", change: () => updateLayout() },
-    element("option", { value: "split" }, "Side by side"),
+    element("option", { value: "wipe" }, "Wipe"),
+    element("option", { value: "side" }, "Side by side"),
+    element("option", { value: "difference" }, "Difference"),
     element("option", { value: "overlay" }, "Overlay"),
   );
   let opacity = 0.6;
@@ -41,12 +44,29 @@ export function createCompareFields(
       updateLayout();
     },
   );
+  let gain = 8;
+  const gainRow = createSliderRow(
+    {
+      label: "Amplification",
+      description: "Factor on the difference of the two frames.",
+      unit: "",
+      minimum: 1,
+      maximum: 64,
+      scale: "logarithmic",
+    },
+    (value) => {
+      gain = value;
+      updateLayout();
+    },
+  );
   const facts = element("p", { class: "facts", role: "status", "data-figure-of": "similarity" });
   const updateLayout = (): void => {
-    const split = mode.value === "split";
-    opacityRow.node.hidden = split || select.value === none;
+    const layout = select.value === none ? null : mode.value;
+    opacityRow.node.hidden = layout !== "overlay";
     opacityRow.show(opacity);
-    divider.setMode(split ? "split" : "overlay", opacity);
+    gainRow.node.hidden = layout !== "difference";
+    gainRow.show(gain);
+    divider.setMode(mode.value as CompareMode, { opacity, gain });
   };
   const choose = (): void => {
     const counterpart = parsed(select.value);
@@ -56,7 +76,7 @@ export function createCompareFields(
     }
     if (counterpart.kind === "buffer" && overlaidBuffers.test(counterpart.name))
       mode.value = "overlay";
-    if (counterpart.kind !== "buffer") mode.value = "split";
+    if (counterpart.kind !== "buffer" && mode.value === "overlay") mode.value = "wipe";
     updateLayout();
     void comparison.start(counterpart);
   };
@@ -81,16 +101,12 @@ export function createCompareFields(
     divider.show(state !== null, label);
     mode.closest<HTMLElement>(".field")?.toggleAttribute("hidden", state === null);
     if (!state) {
-      opacityRow.node.hidden = true;
+      updateLayout();
       setText(facts, "");
       return;
     }
-    const similarity = state.similarity === null ? "…" : state.similarity.toFixed(4);
-    const count = state.frame?.samples ?? 0;
-    const samples = count === 1 ? " · 1 sample" : ` · ${count} samples`;
-    if (state.counterpart.kind === "buffer") setText(facts, "");
-    else if (!state.frame) setText(facts, "Starting the second session");
-    else setText(facts, `SSIM ${similarity}${samples}`);
+    const most = Number(viewer.settings.value(maxSamplesSetting) ?? 1);
+    setText(facts, describeComparison(state, most));
   });
   const node = element(
     "div",
@@ -98,10 +114,11 @@ export function createCompareFields(
     field("Compare", select),
     field("Layout", mode),
     opacityRow.node,
+    gainRow.node,
     facts,
   );
   mode.closest<HTMLElement>(".field")?.setAttribute("hidden", "");
-  opacityRow.node.hidden = true;
+  updateLayout();
   const updateVisibility = (): void => {
     node.hidden = !comparison.possible;
   };
