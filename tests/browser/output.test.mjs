@@ -6,6 +6,7 @@ import { readFileSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { join } from "node:path";
 import { after } from "node:test";
+import { seriousFindings } from "./harness/axe.mjs";
 import { chooseOutput, eventually, screenshot, settle } from "./harness/browser.mjs";
 import { outputFolder } from "./harness/environment.mjs";
 import { difference, statistics, thumbnail } from "./harness/images.mjs";
@@ -104,6 +105,46 @@ stage.test("an image is saved at once as it is, and a converged one can be cance
   assert.ok(await again.getByRole("button", { name: "Save", exact: true }).isEnabled());
   await page.keyboard.press("Escape");
   await again.waitFor({ state: "hidden" });
+});
+
+stage.test("an image is saved in another size, with linked sides and progress", async () => {
+  await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 16 } } });
+  const { page } = await stage.watch();
+  await settle(page, stage.server);
+  const dialog = await openSave(page);
+  const [width, height] = ["Width", "Height"].map((name) =>
+    dialog.getByRole("textbox", { name }),
+  );
+  assert.deepEqual([await width.inputValue(), await height.inputValue()], ["720", "405"]);
+  await width.fill("1440");
+  await width.press("Tab");
+  assert.equal(await height.inputValue(), "810");
+  await dialog.getByRole("button", { name: "Keep the aspect ratio" }).click();
+  await height.fill("99999");
+  await height.press("Tab");
+  assert.equal(await height.inputValue(), "2160");
+  await height.fill("700");
+  await screenshot(page, "save_size");
+  assert.deepEqual(await seriousFindings(page), []);
+  const save = dialog.getByRole("button", { name: "Save", exact: true });
+  const png = await downloaded(page, async () => {
+    await save.click();
+    await dialog.getByText(/Rendering: [1-9]\d* of 16 samples/).waitFor();
+  });
+  assert.deepEqual([png.bytes.readUInt32BE(16), png.bytes.readUInt32BE(20)], [1440, 700]);
+  await page.locator(".toast", { hasText: "1440 x 700 pixels, 16 samples" }).waitFor();
+  const sessions = async () => (await stage.server.call("session.list")).sessions.length;
+  await eventually(async () => (await sessions()) === 1, "the copy to end");
+
+  // Cancelling ends the copy, too.
+  await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 65536 } } });
+  const again = await openSave(page);
+  await again.getByRole("textbox", { name: "Width" }).fill("1000");
+  await again.getByRole("button", { name: "Save", exact: true }).click();
+  await eventually(async () => (await sessions()) === 2, "a copy");
+  await again.getByRole("button", { name: "Cancel" }).click();
+  await eventually(async () => (await sessions()) === 1, "the copy to end");
+  await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 16 } } });
 });
 
 stage.test("the copied image is in the clipboard", async () => {

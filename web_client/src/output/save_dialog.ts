@@ -1,9 +1,11 @@
 // The dialog that saves the view as an image: format, samples, progress, cancelling.
 
 import { saveFile, captureBlob } from "../common/image_files.ts";
-import type { Viewer } from "../session/viewer.ts";
+import { type Viewer, bufferSetting } from "../session/viewer.ts";
 import { button, element, setOptions, setText } from "../widgets/element.ts";
 import { field } from "../widgets/field.ts";
+import { captureInSize } from "./sized_capture.ts";
+import { type ImageSize, createSizeFields } from "./size_fields.ts";
 
 interface SaveHost {
   /** The file's name without its ending. */
@@ -19,6 +21,14 @@ const formats = [
 ] as const;
 type Format = (typeof formats)[number]["value"];
 
+interface RenderedImage {
+  file: Blob;
+  buffer: string;
+  width: number;
+  height: number;
+  samples: number;
+}
+
 const maxSamples = "accumulation.max_samples";
 
 export function createSaveDialog(
@@ -28,6 +38,7 @@ export function createSaveDialog(
 ): { open(): void } {
   const format = element("select", { name: "format" });
   const samples = element("select", { name: "samples" });
+  const size = createSizeFields();
   const bar = element("div", { class: "bar" });
   const progress = element(
     "div",
@@ -42,6 +53,7 @@ export function createSaveDialog(
     { method: "dialog" },
     field("Format", format),
     field("Samples", samples),
+    size.node,
     progress,
     status,
     element("footer", {}, cancel, save),
@@ -59,8 +71,15 @@ export function createSaveDialog(
   /** Counts saves: the result of one that was cancelled is not written. */
   let attempt = 0;
   let isSaving = false;
+  /** The running capture in another size, and its samples so far. */
+  let sized: AbortController | null = null;
+  let sizedSamples = 0;
 
   const targetSamples = (): number => Number(viewer.settings.value(maxSamples) ?? 1);
+  const viewSize = (): ImageSize => {
+    const { width, height } = viewer.stream.settings.value ?? { width: 0, height: 0 };
+    return { width, height };
+  };
   const shownSamples = (): number => viewer.frame.value?.samples ?? 1;
 
   const update = (): void => {
@@ -75,8 +94,8 @@ export function createSaveDialog(
       return;
     }
     const target = targetSamples();
-    const rendered = Math.max(shown, viewer.stats.value?.samples ?? 0);
-    const share = converged ? 1 : Math.min(1, rendered / target);
+    const rendered = sized ? sizedSamples : Math.max(shown, viewer.stats.value?.samples ?? 0);
+    const share = converged && !sized ? 1 : Math.min(1, rendered / target);
     bar.style.width = `${share * 100}%`;
     progress.setAttribute("aria-valuenow", String(Math.round(share * 100)));
     setText(status, `Rendering: ${rendered} of ${Math.max(target, rendered)} samples`);
@@ -87,10 +106,36 @@ export function createSaveDialog(
   const setSaving = (saving: boolean): void => {
     isSaving = saving;
     format.disabled = samples.disabled = save.disabled = saving;
+    size.enable(!saving && viewer.mayCreateSessions);
     progress.hidden = !saving;
     bar.style.width = "0";
     setText(status, "");
     update();
+  };
+
+  /** The view's own size is captured from its session, any other one from a copy. */
+  const render = async (chosen: Format, wanted: number | undefined): Promise<RenderedImage> => {
+    const { width, height } = size.value();
+    const view = viewSize();
+    if (width === view.width && height === view.height) {
+      const capture = await viewer.queries.capture(undefined, chosen, wanted);
+      return { ...capture, file: captureBlob(capture) };
+    }
+    const buffer = String(viewer.settings.value(bufferSetting) ?? "output");
+    const request = { width, height, buffer, extension: extensionOf(chosen), samples: wanted };
+    sized = new AbortController();
+    sizedSamples = 0;
+    update();
+    try {
+      const { signal } = sized;
+      const capture = await captureInSize(viewer, request, signal, (count) => {
+        sizedSamples = count;
+        update();
+      });
+      return { ...capture, width, height, buffer };
+    } finally {
+      sized = null;
+    }
   };
 
   const run = async (): Promise<void> => {
@@ -100,13 +145,13 @@ export function createSaveDialog(
     const wanted = samples.value === "now" ? shownSamples() : undefined;
     setSaving(true);
     try {
-      const capture = await viewer.queries.capture(undefined, chosen, wanted);
+      const image = await render(chosen, wanted);
       if (own !== attempt) return;
-      const suffix = capture.buffer === "output" ? "" : `-${capture.buffer}`;
-      const name = `${host.fileStem()}${suffix}.${chosen === "jpeg" ? "jpg" : chosen}`;
-      saveFile(captureBlob(capture), name);
-      const { width, height } = capture;
-      host.inform(`Saved ${name}: ${width} x ${height} pixels, ${counted(capture.samples)}`);
+      const suffix = image.buffer === "output" ? "" : `-${image.buffer}`;
+      const name = `${host.fileStem()}${suffix}.${extensionOf(chosen)}`;
+      saveFile(image.file, name);
+      const { width, height } = image;
+      host.inform(`Saved ${name}: ${width} x ${height} pixels, ${counted(image.samples)}`);
       dialog.close();
     } catch (error) {
       if (own !== attempt) return;
@@ -125,6 +170,7 @@ export function createSaveDialog(
   });
   dialog.addEventListener("close", () => {
     attempt += 1;
+    sized?.abort();
     setSaving(false);
   });
   return {
@@ -133,12 +179,18 @@ export function createSaveDialog(
       const available = viewer.capabilities.captureFormats.value;
       setOptions(format, [...formats.filter(({ value }) => available.has(value))]);
       format.value ||= "png";
+      const limits = viewer.hello?.limits;
+      const most = { width: limits?.max_width ?? 0, height: limits?.max_height ?? 0 };
+      size.show(viewSize(), most);
+      size.enable(viewer.mayCreateSessions);
       dialog.showModal();
       update();
       samples.value ||= "now";
     },
   };
 }
+
+const extensionOf = (format: Format): "png" | "jpg" | "exr" => (format === "jpeg" ? "jpg" : format);
 
 function counted(samples: number): string {
   return samples === 1 ? "1 sample" : `${samples} samples`;
