@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "net/http/image_request.hpp"
+#include "net/http/token_page.hpp"
 #include "protocol/settings/settings_json.hpp"
 #include "web_client/embedded_assets.hpp"
 
@@ -136,7 +137,13 @@ void Router::handle(const HttpRequest& request, const Pending& pending, Reply re
       request.path == "/" ? request.parameter("token") : std::nullopt;
   Admission admission =
       token ? access_.admit_by(*token, request) : access_.admit(request, !health_check);
-  if (admission.refusal) return reply(*std::move(admission.refusal));
+  if (admission.refusal) {
+    const int status = admission.refusal->status;
+    const bool for_token = status == 401 || status == 429;
+    return reply(for_token && asks_for_page(request)
+                     ? token_page(request, *std::move(admission.refusal))
+                     : *std::move(admission.refusal));
+  }
   if (token) {
     HttpResponse redirect = text_response(303, "Continue without the token in the address.");
     redirect.headers = {{"Location", "/" + query_without(request, "token")},

@@ -224,10 +224,13 @@ Admission AccessControl::check_tokens(const std::vector<std::string>& presented,
     if (const auto role = tokens_.role_of(candidate)) return {.refusal = {}, .role = *role};
   }
   if (!presented.empty()) failures_.failed(client, now);
-  HttpResponse response = text_response(401,
-                                        "A token is required: open /?token=..., or send "
-                                        "\"Authorization: Bearer TOKEN\".");
-  response.headers.emplace_back("WWW-Authenticate", "Bearer");
+  const bool shown = std::ranges::any_of(presented, [](const auto& one) { return !one.empty(); });
+  HttpResponse response = text_response(401, shown ? "The token is not valid."
+                                                   : "A token is required: open /?token=..., or "
+                                                     "send \"Authorization: Bearer TOKEN\".");
+  // RFC 6750, section 3.
+  response.headers.emplace_back("WWW-Authenticate",
+                                shown ? "Bearer error=\"invalid_token\"" : "Bearer");
   return {.refusal = std::move(response)};
 }
 

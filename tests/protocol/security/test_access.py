@@ -116,6 +116,26 @@ class Token(ServerTestCase):
             self.assertEqual(status, 401, wrong)
             self.assertNotIn("set-cookie", headers)
 
+    def test_a_missing_and_a_wrong_token_are_told_apart(self):
+        _, headers, body = self.server.get("/metrics")
+        self.assertEqual(headers["www-authenticate"], "Bearer")
+        self.assertIn(b"A token is required", body)
+        _, headers, body = self.server.get("/metrics", **self.bearer("wrong-token-1"))
+        self.assertEqual(headers["www-authenticate"], 'Bearer error="invalid_token"')
+        self.assertIn(b"The token is not valid", body)
+
+    def test_a_browser_gets_a_page_with_a_field_for_the_token(self):
+        status, headers, body = self.server.get('/?session=a"<b&token=wrong-token-1',
+                                                Accept="text/html,*/*")
+        self.assertEqual(status, 401)
+        self.assertTrue(headers["content-type"].startswith("text/html"))
+        self.assertIn("default-src 'none'", headers["content-security-policy"])
+        self.assertIn(b"This token is not valid", body)
+        self.assertIn(b'name="session" value="a&#34;&#60;b"', body)
+        self.assertNotIn(b"wrong-token-1", body)
+        _, headers, _ = self.server.get("/app.js", Accept="text/html")
+        self.assertTrue(headers["content-type"].startswith("text/plain"))
+
     def test_bearer_header_is_accepted(self):
         self.assertEqual(self.server.get("/metrics", **self.bearer(TOKEN))[0], 200)
         with RawSocket(self.server) as raw:

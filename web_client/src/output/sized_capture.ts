@@ -11,7 +11,7 @@ const smallestQuality = 10;
 /** If the page closes during a capture. */
 const idleSeconds = 60;
 
-export interface SizedCapture {
+interface SizedCapture {
   width: number;
   height: number;
   buffer: string;
@@ -34,7 +34,7 @@ export async function captureInSize(
   const size = { width, height, idle_timeout: idleSeconds };
   const params = { copy_of: viewer.hello?.session ?? "main", ...size };
   const { name } = await viewer.rpc.request("session.create", params, createTimeoutMs);
-  const watcher = watchSamples(viewer, name, progress);
+  const figures = watchSamples(viewer, name, progress);
   try {
     signal.throwIfAborted();
     const url = viewer.connection.address.url(`api/v1/sessions/${name}/frame.${extension}`);
@@ -46,8 +46,8 @@ export async function captureInSize(
     return { file: await response.blob(), samples: rendered };
   } finally {
     // If this fails, the session ends by its idle timeout.
-    await watcher.rpc.request("session.close", { session: name }).catch(() => {});
-    watcher.dispose();
+    await figures.rpc.request("session.close", { session: name }).catch(() => {});
+    figures.dispose();
     viewer.rpc.notify("session.close", { session: name });
   }
 }
