@@ -258,11 +258,14 @@ struct SettingsApplied {
 struct PresetInfo {
   std::string name;
   std::string description;
+  RawJson settings;
 
   static constexpr auto fields() {
     return std::tuple{
         field("name", &PresetInfo::name, "Name for settings.preset."),
         field("description", &PresetInfo::description, "Description of the preset."),
+        field("settings", &PresetInfo::settings,
+              "The patch of all settings of the denoiser that settings.preset applies."),
     };
   }
   bool operator==(const PresetInfo&) const = default;

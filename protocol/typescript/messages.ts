@@ -425,6 +425,8 @@ export interface PresetInfo {
   description: string;
   /** Name for settings.preset. */
   name: string;
+  /** The patch of all settings of the denoiser that settings.preset applies. */
+  settings: JsonObject;
 }
 
 /** Result of settings.presets. */

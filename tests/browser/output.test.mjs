@@ -198,11 +198,17 @@ stage.test("a recording is a playable video with different frames", async () => 
   const drawn = () =>
     page.evaluate(() => Object.values(window.seen.drawn).reduce((sum, count) => sum + count, 0));
   await chooseOutput(page, "Record a video");
-  await page.locator(".toast", { hasText: "Recording" }).waitFor();
+  const stop = page.getByRole("button", { name: "Stop recording" });
+  await stop.waitFor();
   const before = await drawn();
   await eventually(async () => (await drawn()) >= before + 12, "twelve frames", 60_000);
   const { width, height } = await page.evaluate(() => window.seen.frame);
-  const { name, path, bytes } = await downloaded(page, () => chooseOutput(page, "Stop recording"));
+  const { name, path, bytes } = await downloaded(page, async () => {
+    await stop.getByText(/Recording 0:0[1-9]/).waitFor();
+    await screenshot(page, "recording");
+    await stop.click();
+  });
+  assert.equal(await stop.isVisible(), false);
   await stage.server.call("animation.pause");
   assert.match(name, /\.webm$/);
   const video = await playVideo(bytes);

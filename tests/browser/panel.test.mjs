@@ -153,6 +153,38 @@ stage.test("the search finds settings by description and restores the sections",
   assert.equal(await rows(), all);
 });
 
+stage.test("the search finds controls of other tabs and leads to them", async () => {
+  const { page } = await stage.sharedViewer();
+  await openTab(page, "settings");
+  const search = page.getByRole("searchbox", { name: "Search settings" });
+  await search.fill("exposure (ev)");
+  const found = page.locator(".found", { hasText: "Exposure (EV)" });
+  await screenshot(page, "search_elsewhere");
+  await found.press("Enter");
+  const entry = rowOf(page, "exposure.compensation").locator("input.number");
+  await eventually(() => entry.evaluate((node) => node === document.activeElement), "the focus");
+  await openTab(page, "settings");
+  for (const [words, label] of [
+    ["metallic", "Metallic"],
+    ["quality", "Quality"],
+    ["camera", "Camera"],
+  ]) {
+    await search.fill(words);
+    await page.locator(".found", { hasText: label }).first().waitFor();
+  }
+  await search.fill("no such control");
+  await page.getByText("No matching settings.").waitFor();
+  await search.fill("");
+  assert.equal(await page.locator(".found").count(), 0);
+});
+
+stage.test("the preset in effect is marked from the start", async () => {
+  const { page } = await stage.watch();
+  await openTab(page, "settings");
+  const best = page.getByRole("button", { name: "Best", exact: true });
+  await eventually(async () => (await best.getAttribute("aria-pressed")) === "true", "the mark");
+});
+
 stage.test("a preset is applied and marked until one of its settings changes", async () => {
   const { page } = await stage.sharedViewer();
   const preset = page.getByRole("button", { name: "SVGF", exact: true });

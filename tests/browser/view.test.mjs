@@ -1,6 +1,7 @@
 // Bookmarks, navigation, animation clips, unknown settings, scene thumbnails.
 
 import assert from "node:assert/strict";
+import { seriousFindings } from "./harness/axe.mjs";
 import {
   distance,
   eventually,
@@ -8,6 +9,7 @@ import {
   openTab,
   staticCamera,
   screenshot,
+  settle,
   setCamera,
 } from "./harness/browser.mjs";
 import { Stage } from "./harness/stage.mjs";
@@ -26,8 +28,17 @@ stage.test("a bookmark persists over a reload and moves the camera in a transiti
   await page.getByRole("button", { name: "View 1", exact: true }).click();
   const back = await staticCamera(page, stage.server);
   assert.ok(distance(back.eye, saved.eye) < 1e-3, `${back.eye} instead of ${saved.eye}`);
-  await page.getByRole("button", { name: "Remove View 1" }).click();
-  assert.equal(await page.getByRole("button", { name: "View 1", exact: true }).count(), 0);
+  assert.equal(await page.locator(".bookmark-image").count(), 1, "no thumbnail");
+  await page.getByRole("button", { name: "Rename View 1" }).click();
+  const name = page.getByRole("textbox", { name: "New name of View 1" });
+  await name.fill("From above");
+  await name.press("Enter");
+  await page.getByRole("button", { name: "From above", exact: true }).waitFor();
+  await screenshot(page, "bookmarks");
+  assert.deepEqual(await seriousFindings(page), []);
+  await page.getByRole("button", { name: "Remove From above" }).click();
+  await page.getByRole("button", { name: "Confirm: remove From above" }).click();
+  assert.equal(await page.locator(".bookmark").count(), 0);
 });
 
 stage.test("W flies forward, D to the right, and dragging during flight looks around", async () => {
@@ -52,6 +63,41 @@ stage.test("W flies forward, D to the right, and dragging during flight looks ar
   const [deltaX, , deltaZ] = looked.eye.map((value, axis) => value - right.eye[axis]);
   assert.ok(Math.hypot(deltaX, deltaZ) < 0.1, "looking around moved the eye");
   assert.ok(Math.abs(looked.target[0] - looked.eye[0]) > 0.05, "the view did not turn");
+});
+
+stage.test("a drag orbits around the point that was clicked", async () => {
+  const { page } = await stage.watch({ reducedMotion: "reduce" }); // no inertia
+  await setCamera(page, stage.server, { eye: [0, 1.5, 6], target: [0, 0.6, 0] });
+  const at = { x: 0.25, y: 0.8 };
+  const { position } = await stage.server.call("scene.pick", at);
+  const { x, y, width, height } = await page.locator("#view").boundingBox();
+  await page.mouse.move(x + at.x * width, y + at.y * height);
+  // The drag begins when the server has told the page the point.
+  const answers = await page.evaluate(() => window.seen.answers);
+  await page.mouse.down();
+  await page.waitForFunction((count) => window.seen.answers > count, answers);
+  await page.mouse.move(x + at.x * width + 120, y + at.y * height, { steps: 6 });
+  await page.mouse.up();
+  const { eye } = await staticCamera(page, stage.server);
+  assert.ok(Math.hypot(eye[0], eye[2] - 6) > 0.5, `${eye}`);
+  await settle(page, stage.server);
+  const there = await stage.server.call("scene.pick", at);
+  assert.ok(distance(there.position, position) < 0.1, `${there.position}, not ${position}`);
+  assert.ok(Math.abs(distance(eye, position) - distance([0, 1.5, 6], position)) < 1e-2);
+});
+
+stage.test("a fit leaves the scene beside the panel", async () => {
+  const { page } = await stage.watch();
+  await page.locator("#view").focus();
+  await page.keyboard.press("f");
+  const beside = await staticCamera(page, stage.server);
+  await page.keyboard.press("h");
+  await page.locator("#view").focus();
+  await page.keyboard.press("f");
+  await eventually(async () => {
+    const whole = await stage.server.call("camera.get");
+    return distance(whole.target, beside.target) > 0.1;
+  }, "a fit into the whole view");
 });
 
 stage.test("the wheel zooms towards the pointer", async () => {

@@ -3,7 +3,15 @@ import test from "node:test";
 import type { Vector3 } from "heliograph/json.ts";
 import type { CameraPose } from "../src/common/camera_pose.ts";
 import { length, subtract } from "../src/common/vector.ts";
-import { dolly, orbit, pan, visibleHeight, zoomTo } from "../src/view/camera.ts";
+import {
+  dolly,
+  fitBeside,
+  orbit,
+  orbitAround,
+  pan,
+  visibleHeight,
+  zoomTo,
+} from "../src/view/camera.ts";
 import { ZoomAnchor } from "../src/view/zoom_anchor.ts";
 
 const front: CameraPose = {
@@ -123,4 +131,57 @@ test("until the surface is known the view comes no closer than by its part", asy
   assert.equal(asked, 1);
   assert.equal(anchor.under(0.6, 0.5), null, "another point");
   assert.equal(asked, 2);
+});
+
+/** Where a point is seen: right and up by distance along the view direction. */
+function seen(camera: CameraPose, point: Vector3): [right: number, up: number] {
+  const minus = (a: Vector3, b: Vector3): Vector3 => [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
+  const forward = minus(camera.target, camera.eye);
+  const size = Math.hypot(...forward);
+  const [x, y, z] = forward.map((value) => value / size) as Vector3;
+  const level = Math.hypot(x, z);
+  const rightward: Vector3 = [-z / level, 0, x / level];
+  const upward: Vector3 = [
+    rightward[1] * z - rightward[2] * y,
+    rightward[2] * x - rightward[0] * z,
+    rightward[0] * y - rightward[1] * x,
+  ];
+  const [a, b, c] = minus(point, camera.eye);
+  const along = (v: Vector3): number => a * v[0] + b * v[1] + c * v[2];
+  const depth = along([x, y, z]);
+  return [along(rightward) / depth, along(upward) / depth];
+}
+
+test("an orbit around a point keeps its place in the image and its distance", () => {
+  const start: CameraPose = {
+    eye: [0, 1, 6],
+    target: [0, 0.5, 0],
+    up: [0, 1, 0],
+    vertical_fov: 45,
+    name: null,
+  };
+  const pivot: Vector3 = [1.5, 1, 2];
+  const turned = orbitAround(start, pivot, 0.7, 0.3);
+  const [before, after] = [seen(start, pivot), seen(turned, pivot)];
+  before.forEach((value, axis) => assert.ok(Math.abs(value - after[axis]!) < 1e-9));
+  const distance = ({ eye }: CameraPose): number =>
+    Math.hypot(...eye.map((value, axis) => value - pivot[axis]!));
+  assert.ok(Math.abs(distance(turned) - distance(start)) < 1e-9);
+  assert.ok(Math.hypot(turned.eye[0] - start.eye[0], turned.eye[2] - start.eye[2]) > 1);
+});
+
+test("a fit beside the panel centres the scene in the part that is not covered", () => {
+  const start: CameraPose = {
+    eye: [0, 0, 10],
+    target: [0, 0, 0],
+    up: [0, 1, 0],
+    vertical_fov: 60,
+    name: null,
+  };
+  const fitted = fitBeside(start, 1.5, 0.5);
+  const [right] = seen(fitted, [0, 0, 0]);
+  // In fractions of half the width: the centre of the left half.
+  assert.ok(Math.abs(right / (Math.tan(Math.PI / 6) * 1.5) + 0.5) < 1e-9, `${right}`);
+  assert.ok(fitted.eye[2] > 10, "the scene is narrower than the view");
+  assert.ok(Math.abs(fitBeside(start, 3, 0.1).eye[2] - 10) < 1e-9);
 });

@@ -18,7 +18,8 @@ namespace {
 PresetList list_presets() {
   PresetList list;
   for (const protocol::Preset& preset : protocol::presets()) {
-    list.presets.push_back({std::string(preset.name), std::string(preset.description)});
+    list.presets.push_back(
+        {std::string(preset.name), std::string(preset.description), preset.settings});
   }
   return list;
 }

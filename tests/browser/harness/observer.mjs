@@ -17,6 +17,8 @@ function observe() {
     /** Number of calls sent and notifications received, by method. */
     sent: {},
     received: {},
+    /** Number of answers to calls. */
+    answers: 0,
   };
   window.seen = seen;
   const count = (table, name) => (table[name] = (table[name] ?? 0) + 1);
@@ -33,7 +35,10 @@ function observe() {
     }
   };
   const received = (text) => {
-    if (!/"method"/.test(text.slice(0, 60))) return; // a result, which may be large
+    if (!/"method"/.test(text.slice(0, 60))) {
+      seen.answers += 1; // a result, which may be large
+      return;
+    }
     const { method, params } = JSON.parse(text);
     count(seen.received, method);
     if (method !== "camera.changed") return;

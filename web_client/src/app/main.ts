@@ -6,6 +6,7 @@ import { createSaveDialog } from "../output/save_dialog.ts";
 import { createHelp } from "../overlay/help.ts";
 import { mountMjpegFallback } from "../overlay/mjpeg_fallback.ts";
 import { mountParticipants } from "../overlay/participants.ts";
+import { mountRefining } from "../overlay/refining.ts";
 import { mountStatus } from "../overlay/status.ts";
 import { Toasts } from "../overlay/toasts.ts";
 import { mountTransport } from "../overlay/transport.ts";
@@ -14,7 +15,7 @@ import { mountPanel } from "../panel/panel.ts";
 import { mountThumbnails } from "../previews/thumbnails.ts";
 import { viewIn } from "../session/view_link.ts";
 import { Viewer } from "../session/viewer.ts";
-import { focusOn } from "../view/camera.ts";
+import { fitBeside, focusOn } from "../view/camera.ts";
 import { createDivider } from "../view/divider.ts";
 import { Navigation } from "../view/navigation.ts";
 import { createPicker } from "../view/picker.ts";
@@ -73,6 +74,12 @@ function main(): void {
   const fit = (): void => {
     if (viewer.mayChange && !viewer.restoring.value) void viewer.cameraMoves.fit();
   };
+  viewer.cameraMoves.place = (camera) => {
+    const { left } = find("panel").getBoundingClientRect();
+    const { clientWidth, clientHeight } = canvas;
+    const covered = panel.isBeside() ? Math.max(0, 1 - left / clientWidth) : 0;
+    return covered > 0 ? fitBeside(camera, clientWidth / clientHeight, covered) : camera;
+  };
   viewer.cameraMoves.animateTo = (camera, recorded) => navigation.goTo(camera, recorded);
   viewer.cameraMoves.isBusy = () => navigation.active;
 
@@ -86,7 +93,11 @@ function main(): void {
   });
   const help = createHelp(find<HTMLDialogElement>("help"));
   const panel = mountPanel(find("panel"), viewer, {
-    output: outputActions(viewer, { save: saveDialog.open, inform }),
+    output: outputActions(viewer, {
+      recordingButton: find("recording"),
+      save: saveDialog.open,
+      inform,
+    }),
     inspect: {
       comparison: new Comparison(viewer, () => divider.newCanvas()),
       divider,
@@ -98,6 +109,7 @@ function main(): void {
   });
   mountTransport(viewer, find("transport"));
   mountStatus(viewer, find("pill"), find("notice"));
+  mountRefining(viewer, find("refining"));
   mountTooltips();
 
   viewer.stream.chooseSize = ({ limits, device }) => {

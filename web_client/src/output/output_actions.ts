@@ -4,10 +4,13 @@ import { copyText } from "../common/clipboard.ts";
 import { captureBlob, saveFile } from "../common/image_files.ts";
 import { linkTo } from "../session/view_link.ts";
 import type { Viewer } from "../session/viewer.ts";
+import { element, setText } from "../widgets/element.ts";
 import type { MenuItem } from "../widgets/menu.ts";
 import { Recorder } from "./recorder.ts";
 
 interface OutputHost {
+  /** Where the duration of a recording is shown. */
+  recordingButton: HTMLElement;
   /** Opens the dialog that saves an image. */
   save(): void;
   /** Shows the result as one sentence. */
@@ -19,6 +22,11 @@ export function outputActions(viewer: Viewer, host: OutputHost): MenuItem[] {
     void action().catch((error: unknown) => viewer.report(error));
   };
   const recorder = new Recorder(viewer);
+  const toggleRecording = attempt(async () => {
+    if (!recorder.running) await recorder.start();
+    else saveFile(await recorder.stop(), `${fileStem(viewer)}.webm`);
+  });
+  mountRecordingButton(recorder, host.recordingButton, toggleRecording);
   return [
     { label: "Save image", icon: "save", run: host.save },
     {
@@ -35,14 +43,7 @@ export function outputActions(viewer: Viewer, host: OutputHost): MenuItem[] {
       label: "Record a video",
       currentLabel: () => (recorder.running ? "Stop recording" : "Record a video"),
       icon: "record",
-      run: attempt(async () => {
-        if (!recorder.running) {
-          await recorder.start();
-          host.inform('Recording. Choose "Stop recording" to save the video.');
-          return;
-        }
-        saveFile(await recorder.stop(), `${fileStem(viewer)}.webm`);
-      }),
+      run: toggleRecording,
       isAvailable: () => Recorder.possible,
     },
     {
@@ -72,6 +73,29 @@ export function outputActions(viewer: Viewer, host: OutputHost): MenuItem[] {
       }),
     },
   ];
+}
+
+/** A button that shows the duration of the recording, and stops it. */
+function mountRecordingButton(recorder: Recorder, root: HTMLElement, stop: () => void): void {
+  const duration = element("span");
+  const button = element(
+    "button",
+    { type: "button", class: "recording-button", "data-tip": "Stop recording", click: stop },
+    element("span", { class: "dot" }),
+    duration,
+  );
+  root.append(button);
+  recorder.seconds.watch((seconds) => {
+    root.hidden = seconds === null;
+    const text = formatDuration(seconds ?? 0);
+    setText(duration, `Recording ${text}`);
+    button.setAttribute("aria-label", `Stop recording, ${text}`);
+  });
+}
+
+/** 75 -> "1:15" */
+function formatDuration(seconds: number): string {
+  return `${Math.floor(seconds / 60)}:${String(seconds % 60).padStart(2, "0")}`;
 }
 
 /** The scene's name as the name of a file. */

@@ -1,6 +1,7 @@
 // Records the frames as WebM. The visible canvas belongs to the stream worker, so every frame is
 // copied to another canvas, which the recorder captures.
 
+import { Signal } from "../common/signal.ts";
 import type { Viewer } from "../session/viewer.ts";
 
 const bitsPerSecond = 8_000_000;
@@ -11,6 +12,10 @@ export class Recorder {
   private recorder: MediaRecorder | null = null;
   private readonly canvas = document.createElement("canvas");
   private readonly parts: Blob[] = [];
+  private startedAt = 0;
+  /** Seconds since the start, every second; null while nothing is recorded. */
+  readonly seconds = new Signal<number | null>(null);
+  private timer = 0;
 
   static get possible(): boolean {
     return typeof MediaRecorder === "function" && "captureStream" in HTMLCanvasElement.prototype;
@@ -35,12 +40,19 @@ export class Recorder {
     recorder.addEventListener("dataavailable", ({ data }) => this.parts.push(data));
     recorder.start(1000);
     this.recorder = recorder;
+    this.startedAt = performance.now();
+    this.seconds.set(0);
+    this.timer = window.setInterval(() => {
+      this.seconds.set(Math.floor((performance.now() - this.startedAt) / 1000));
+    }, 1000);
     this.viewer.connection.onFrameCopy = (image) => this.paint(image);
   }
 
   /** Ends the recording and returns the file. */
   async stop(): Promise<Blob> {
     const { recorder } = this;
+    clearInterval(this.timer);
+    this.seconds.set(null);
     this.viewer.connection.onFrameCopy = null;
     this.recorder = null;
     if (!recorder) throw new Error("No recording is running");

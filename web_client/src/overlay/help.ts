@@ -6,10 +6,10 @@ const entries: [title: string, rows: [keys: string[], meaning: string][]][] = [
   [
     "Mouse",
     [
-      [["Drag"], "Orbit"],
+      [["Drag"], "Orbit around the point under the pointer"],
       [["Right drag"], "Pan (also middle drag or Shift + drag)"],
-      [["Wheel"], "Zoom to the surface under the pointer"],
-      [["Double click"], "Focus on the surface under the pointer"],
+      [["Wheel"], "Zoom to pointer"],
+      [["Double click"], "Focus on the point under the pointer"],
     ],
   ],
   [
@@ -17,6 +17,7 @@ const entries: [title: string, rows: [keys: string[], meaning: string][]][] = [
     [
       [["One finger"], "Orbit"],
       [["Two fingers"], "Pan, pinch to zoom"],
+      [["Double tap"], "Focus on the point under the finger"],
     ],
   ],
   [
@@ -36,11 +37,18 @@ const entries: [title: string, rows: [keys: string[], meaning: string][]][] = [
   ],
 ];
 
+/** Gestures come first where there is no mouse. */
+function inOrder(): typeof entries {
+  const rank = ([title]: (typeof entries)[number]): number => (title === "Touch" ? 0 : 1);
+  if (!matchMedia("(pointer: coarse)").matches) return entries;
+  return [...entries].sort((a, b) => rank(a) - rank(b));
+}
+
 export function createHelp(dialog: HTMLDialogElement): { open(): void } {
   const close = button("Close", "close", () => dialog.close());
   dialog.append(
     element("header", {}, element("h1", { id: "help-title" }, "Navigation"), close),
-    ...entries.map(([title, rows]) =>
+    ...inOrder().map(([title, rows]) =>
       element(
         "section",
         {},

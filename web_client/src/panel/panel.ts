@@ -26,6 +26,8 @@ interface PanelActions {
 
 interface Panel {
   resolution: Signal<ResolutionChoice>;
+  /** Whether it covers a part of the view at the right. */
+  isBeside(): boolean;
   toggle(): void;
 }
 
@@ -39,7 +41,9 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
       id: "settings",
       label: "Settings",
       icon: "sliders",
-      body: createSettingsTab(viewer, [...appearanceGroups, bufferSetting]),
+      body: createSettingsTab(viewer, [...appearanceGroups, bufferSetting], (id) =>
+        tabs.select(id),
+      ),
     },
     {
       id: "inspect",
@@ -105,7 +109,8 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
   narrow.addEventListener("change", restore);
   mountSheetDrag(header, () => open, toggle);
   restore();
-  return { resolution: stream.resolution, toggle };
+  const isBeside = (): boolean => open && !narrow.matches;
+  return { resolution: stream.resolution, isBeside, toggle };
 }
 
 /** On narrow screens the header is the sheet's handle: a swipe up opens it, down closes it. */

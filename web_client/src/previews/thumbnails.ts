@@ -36,18 +36,22 @@ async function captureThumbnail(viewer: Viewer): Promise<void> {
   if (!scene || viewer.loading.current.value || viewer.restoring.value || buffer !== "output") return;
   const frame = await viewer.connection.copyFrame();
   if (!frame) return;
+  const image = cropped(frame, width);
+  if (image) storeThumbnail(scene, image);
+  frame.close();
+}
+
+/** The frame as a small image of 16:9 around its centre, in a data URL. */
+export function cropped(frame: ImageBitmap, width: number): string | null {
   const canvas = document.createElement("canvas");
   canvas.width = width;
   canvas.height = Math.round((width * 9) / 16);
   const context = canvas.getContext("2d");
-  // Crops the frame to 16:9 around its centre.
+  if (!context) return null;
   const scale = Math.min(frame.width / canvas.width, frame.height / canvas.height);
   const [wide, high] = [canvas.width * scale, canvas.height * scale];
   const [left, top] = [(frame.width - wide) / 2, (frame.height - high) / 2];
-  if (context) {
-    context.imageSmoothingQuality = "high";
-    context.drawImage(frame, left, top, wide, high, 0, 0, canvas.width, canvas.height);
-    storeThumbnail(scene, canvas.toDataURL("image/jpeg", 0.75));
-  }
-  frame.close();
+  context.imageSmoothingQuality = "high";
+  context.drawImage(frame, left, top, wide, high, 0, 0, canvas.width, canvas.height);
+  return canvas.toDataURL("image/jpeg", 0.75);
 }

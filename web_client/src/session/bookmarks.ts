@@ -3,12 +3,15 @@
 import type { CameraPose } from "../common/camera_pose.ts";
 import { preferences } from "../common/preferences.ts";
 
-interface Bookmark {
+export interface Bookmark {
   name: string;
   camera: CameraPose;
+  /** A data URL. */
+  thumbnail?: string | undefined;
 }
 
 const maxBookmarks = 24;
+const maxNameLength = 60;
 
 function keyOf(scene: string): string {
   return `bookmarks.${scene}`;
@@ -24,11 +27,14 @@ export function readBookmarks(scene: string): Bookmark[] {
 }
 
 /** Adds a bookmark under the first free number. */
-export function addBookmark(scene: string, camera: CameraPose): Bookmark[] {
+export function addBookmark(scene: string, camera: CameraPose, thumbnail?: string): Bookmark[] {
   const existing = readBookmarks(scene);
   let number = 1;
   while (existing.some(({ name }) => name === `View ${number}`)) number += 1;
-  const all = [...existing, { name: `View ${number}`, camera: { ...camera, name: null } }];
+  const all = [
+    ...existing,
+    { name: `View ${number}`, camera: { ...camera, name: null }, thumbnail },
+  ];
   return store(scene, all.slice(-maxBookmarks));
 }
 
@@ -36,6 +42,17 @@ export function removeBookmark(scene: string, name: string): Bookmark[] {
   return store(
     scene,
     readBookmarks(scene).filter((bookmark) => bookmark.name !== name),
+  );
+}
+
+/** Does nothing where the name is empty or another bookmark has it. */
+export function renameBookmark(scene: string, from: string, to: string): Bookmark[] {
+  const all = readBookmarks(scene);
+  const name = to.trim().slice(0, maxNameLength);
+  if (name === "" || all.some((bookmark) => bookmark.name === name)) return all;
+  return store(
+    scene,
+    all.map((bookmark) => (bookmark.name === from ? { ...bookmark, name } : bookmark)),
   );
 }
 

@@ -25,6 +25,7 @@ export class CameraMoves {
     this.moveTo(camera, recorded);
   /** True while the user moves the camera; poses of other viewers are then ignored. */
   isBusy: () => boolean = () => false;
+  place: (camera: CameraPose) => CameraPose = (camera) => camera;
   private readonly host: CameraMovesHost;
   private inputSeq = 0;
 
@@ -54,8 +55,15 @@ export class CameraMoves {
     });
   }
 
+  /** Fits the scene into the view; `place` adapts the pose to what covers the view. */
   async fit(): Promise<void> {
-    await this.host.attempt(async () => this.arrive(await this.host.rpc.request("camera.fit")));
+    await this.host.attempt(async () => {
+      const camera = await this.host.rpc.request("camera.fit");
+      const placed = this.place(camera);
+      this.remember(placed);
+      this.host.camera.set(camera);
+      if (placed !== camera) this.moveTo(placed, false);
+    });
   }
 
   private arrive(camera: CameraPose, recorded = true): void {

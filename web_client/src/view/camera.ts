@@ -29,6 +29,31 @@ export function orbit(camera: CameraPose, yaw: number, pitch: number): CameraPos
 }
 
 /**
+ * Like `orbit`, but about any point: its place in the image stays, and the horizon stays level.
+ */
+export function orbitAround(
+  camera: CameraPose,
+  pivot: Vector3,
+  yaw: number,
+  pitch: number,
+): CameraPose {
+  const turned = orbit(camera, yaw, pitch);
+  const [from, to] = [basis(camera), basis(turned)];
+  const toPivot = subtract(pivot, camera.eye);
+  const forward = normalize(subtract(camera.target, camera.eye));
+  const turnedForward = normalize(subtract(turned.target, turned.eye));
+  const seen = add(
+    add(
+      scale(to.rightward, dot(toPivot, from.rightward)),
+      scale(to.upward, dot(toPivot, from.upward)),
+    ),
+    scale(turnedForward, dot(toPivot, forward)),
+  );
+  const eye = subtract(pivot, seen);
+  return { ...turned, eye, target: add(eye, subtract(turned.target, turned.eye)) };
+}
+
+/**
  * Moves eye and target across the view so that the target plane follows the pointer. Distances are
  * fractions of the viewport's height: positive right and down, like pointer movements.
  */
@@ -125,6 +150,21 @@ export function fly(camera: CameraPose, right: number, up: number, forward: numb
 export function focusOn(camera: CameraPose, point: Vector3, distance: number): CameraPose {
   const backward = normalize(subtract(camera.eye, camera.target));
   return { ...camera, eye: add(point, scale(backward, distance)), target: point, name: null };
+}
+
+/**
+ * A pose that fits the scene into the whole image, moved so that it fits beside the part at the
+ * right that is covered, in fractions of the width. `aspect` is width by height of the image.
+ */
+export function fitBeside(camera: CameraPose, aspect: number, covered: number): CameraPose {
+  const { rightward, distance } = basis(camera);
+  const vertical = Math.tan((camera.vertical_fov * Math.PI) / 360);
+  const sine = (horizontal: number): number => Math.sin(Math.atan(Math.min(vertical, horizontal)));
+  const factor = sine(vertical * aspect) / sine(vertical * aspect * (1 - covered));
+  const backward = normalize(subtract(camera.eye, camera.target));
+  const shift = scale(rightward, covered * distance * factor * vertical * aspect);
+  const target = add(camera.target, shift);
+  return { ...camera, eye: add(target, scale(backward, distance * factor)), target, name: null };
 }
 
 /** Interpolates between two poses; `t` in [0, 1]. */

@@ -2,7 +2,17 @@
 
 import type { Vector3 } from "heliograph/json.ts";
 import type { CameraPose } from "../common/camera_pose.ts";
-import { dolly, dollyToPoint, fly, interpolate, look, orbit, pan, zoomTo } from "./camera.ts";
+import {
+  dolly,
+  dollyToPoint,
+  fly,
+  interpolate,
+  look,
+  orbit,
+  orbitAround,
+  pan,
+  zoomTo,
+} from "./camera.ts";
 import { ZoomAnchor } from "./zoom_anchor.ts";
 
 interface NavigationHost {
@@ -68,6 +78,8 @@ export class Navigation {
   private readonly heldKeys = new Set<string>();
   private readonly zoomAnchor: ZoomAnchor;
   private gesture: Gesture | null = null;
+  /** The surface that was clicked; null: orbits about the target. */
+  private pivot: Vector3 | null = null;
   private pendingPose: CameraPose | null = null;
   private frameRequest = 0;
   private lastFrameAt = 0;
@@ -139,6 +151,8 @@ export class Navigation {
     if (this.pointers.size > 1) this.gesture = "pinch";
     else if (this.flying) this.gesture = "look";
     else this.gesture = event.button !== 0 || event.shiftKey ? "pan" : "orbit";
+    this.pivot = null;
+    if (this.gesture === "orbit") void this.findPivot(event);
     this.surface.classList.add("grabbing");
   };
 
@@ -173,13 +187,25 @@ export class Navigation {
     this.schedule();
   };
 
+  /** Until the server has answered the view orbits about the target. */
+  private async findPivot({ clientX, clientY, pointerId }: PointerEvent): Promise<void> {
+    const { left, top, width, height } = this.surface.getBoundingClientRect();
+    const at = { x: (clientX - left) / width, y: (clientY - top) / height };
+    const surface = await this.host.surfaceAt(at.x, at.y);
+    if (this.gesture === "orbit" && this.pointers.has(pointerId)) this.pivot = surface;
+  }
+
+  private orbit(camera: CameraPose, yaw: number, pitch: number): CameraPose {
+    return this.pivot ? orbitAround(camera, this.pivot, yaw, pitch) : orbit(camera, yaw, pitch);
+  }
+
   private dragOrbit(right: number, down: number, at: number): void {
     const elapsed = Math.max(4, Math.min(100, at - this.lastMoveAt));
     this.lastMoveAt = at;
     const blend = Math.min(1, elapsed / 40);
     this.inertia.yaw += (-right / elapsed - this.inertia.yaw) * blend;
     this.inertia.pitch += (down / elapsed - this.inertia.pitch) * blend;
-    this.change((camera) => orbit(camera, -right, down));
+    this.change((camera) => this.orbit(camera, -right, down));
   }
 
   /** Two fingers: their midpoint pans, their distance dollies. */
@@ -334,7 +360,7 @@ export class Navigation {
       this.inertia = { yaw: 0, pitch: 0 };
       return false;
     }
-    this.change((camera) => orbit(camera, yaw * elapsedMs, pitch * elapsedMs));
+    this.change((camera) => this.orbit(camera, yaw * elapsedMs, pitch * elapsedMs));
     const decay = Math.exp(-elapsedMs / inertiaMs);
     this.inertia = { yaw: yaw * decay, pitch: pitch * decay };
     return true;

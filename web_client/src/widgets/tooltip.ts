@@ -55,9 +55,9 @@ export function mountTooltips(): void {
   document.addEventListener("focusout", hide);
   document.addEventListener("pointerdown", hide);
   document.addEventListener("scroll", hide, true);
-  document.addEventListener("keydown", (event) => {
-    if (event.key === "Escape") hide();
-  });
+  document.documentElement.addEventListener("pointerleave", hide);
+  addEventListener("blur", hide);
+  document.addEventListener("keydown", hide);
 }
 
 /** Left of the target where there is room (the panel is at the right), otherwise above or below. */

@@ -1,18 +1,18 @@
 // The Settings tab: presets, search, undo and redo, and the generated sections.
 
-import type { JsonObject } from "heliograph/json.ts";
 import type { Viewer } from "../../session/viewer.ts";
 import { element, icon, setText } from "../../widgets/element.ts";
 import { requiresControl } from "../../widgets/requires_control.ts";
 import { presetLabel } from "../../common/labels.ts";
+import { findControls } from "./control_search.ts";
 import { mountSettings } from "./settings_sections.ts";
 
-interface Preset {
-  name: string;
-  description: string;
-}
-
-export function createSettingsTab(viewer: Viewer, shownElsewhere: string[]): HTMLElement {
+/** `showTab` selects another tab by its name. */
+export function createSettingsTab(
+  viewer: Viewer,
+  shownElsewhere: string[],
+  showTab: (id: string) => void,
+): HTMLElement {
   const sections = element("div", { class: "settings" });
   const mounted = mountSettings(sections, viewer.settings, {
     id: "settings",
@@ -34,8 +34,12 @@ export function createSettingsTab(viewer: Viewer, shownElsewhere: string[]): HTM
       find();
     },
   });
+  const elsewhere = element("div", { class: "elsewhere", role: "group", hidden: true });
+  elsewhere.setAttribute("aria-label", "Controls in other tabs");
   const find = (): void => {
-    noResults.hidden = mounted.filter(search.value) > 0;
+    const here = mounted.filter(search.value);
+    const others = findControls(elsewhere, search.value, showTab);
+    noResults.hidden = here + others > 0;
     setText(noResults, "No matching settings.");
   };
   const searchBox = element("div", { class: "search" }, icon("search"), search);
@@ -45,6 +49,7 @@ export function createSettingsTab(viewer: Viewer, shownElsewhere: string[]): HTM
     requiresControl(viewer, createPresetChips(viewer)),
     element("div", { class: "toolbar" }, searchBox),
     noResults,
+    elsewhere,
     requiresControl(viewer, sections),
   );
 }
@@ -52,24 +57,26 @@ export function createSettingsTab(viewer: Viewer, shownElsewhere: string[]): HTM
 /** The presets in their order; the active one is marked. */
 function createPresetChips(viewer: Viewer): HTMLElement {
   const chips = element("div", { class: "chips", role: "group", "aria-label": "Presets" });
-  let applied: { name: string; settings: JsonObject } | null = null;
+  /** The preset that was in effect last; it is marked as modified when a setting changes. */
+  let last = "";
   const mark = (): void => {
+    const presets = viewer.capabilities.presets.value;
+    const active = presets.find(({ settings }) => viewer.settings.matches(settings))?.name;
+    last = active ?? last;
     for (const chip of chips.querySelectorAll<HTMLButtonElement>("button")) {
-      const active = chip.dataset.preset === applied?.name;
-      const unmodified = active && applied !== null && viewer.settings.matches(applied.settings);
-      chip.setAttribute("aria-pressed", String(unmodified));
-      chip.classList.toggle("modified", active && !unmodified);
+      const { preset } = chip.dataset;
+      chip.setAttribute("aria-pressed", String(preset === active));
+      chip.classList.toggle("modified", active === undefined && preset === last);
     }
   };
   const apply = async (name: string): Promise<void> => {
     try {
-      applied = { name, settings: await viewer.settings.choosePreset(name) };
-      mark();
+      await viewer.settings.choosePreset(name);
     } catch (error) {
       viewer.report(error);
     }
   };
-  viewer.capabilities.presets.watch((presets: Preset[]) => {
+  viewer.capabilities.presets.watch((presets) => {
     chips.hidden = presets.length === 0;
     chips.replaceChildren(
       ...presets.map(({ name, description }) =>
