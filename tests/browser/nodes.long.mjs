@@ -43,7 +43,7 @@ function testWithTwo(name, body, stage = open) {
 const viewersIn = async (server, session) =>
   (await server.call("session.info", {}, session)).viewers.length;
 
-const missing = (page) => page.locator(".toast", { hasText: "does not exist" });
+const missing = (page) => page.locator(".toast", { hasText: "There is no session" });
 
 /** The link that "Copy link to join" puts into the clipboard. */
 async function linkToJoin(page) {
