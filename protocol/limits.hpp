@@ -34,6 +34,6 @@ inline constexpr float max_field_of_view = 170.0f;
 inline constexpr std::size_t max_session_name = 64;  // viewers, presets and buffers as well
 inline constexpr std::size_t max_node_name = 256;    // cameras, clips, lights, materials, variants
 inline constexpr std::uint32_t max_idle_timeout = 31'536'000;  // seconds
-inline constexpr std::size_t max_scene_name = 512;   // paths in the catalogue; environments as well
+inline constexpr std::size_t max_scene_name = 512;  // paths in the catalogue; environments as well
 
 }  // namespace heliograph::protocol

@@ -113,7 +113,7 @@ MISTAKES = (
             (("return any(isnan(value)) || any(isinf(value)) ? vec3(0.0) : value;",
               "return value;"),)),
     Mistake("15", "history survives a lighting switch",
-            "server/render/frame/renderer.cpp",
+            "server/render/frame/renderer_state.cpp",
             "if (includes(scope, protocol::ResetScope::history)) has_previous = false;\n", "",
             "image_tests", "History.LightingSwitchesResetHistory"),
     Mistake("16", "the vertical axis of motion vectors is flipped",
