@@ -1,0 +1,122 @@
+// How a view takes over the state of its session.
+
+#include <utility>
+
+#include "scene/animation/pose.hpp"
+#include "scene/camera.hpp"
+#include "session/event_log.hpp"
+#include "session/rendering/device_migration.hpp"
+#include "session/rendering/session_view.hpp"
+
+namespace heliograph::session {
+
+using std::chrono::milliseconds;
+
+namespace {
+
+/// Frames keep their buffers for so long after one was read: another one often follows, and the
+/// change takes as long as a frame.
+constexpr std::chrono::seconds keep_buffers_after{10};
+
+SceneEdits::Lights file_lights(const scene::Scene& scene) {
+  SceneEdits::Lights lights;
+  for (const scene::Light& light : scene.lights) lights.push_back(light.device);
+  return lights;
+}
+
+}  // namespace
+
+void SessionView::adopt_state() {
+  if (session_->version() != state_.version) adopt(session_->render_state());
+}
+
+void SessionView::adopt(RenderState next) {
+  const RenderState before = std::exchange(state_, std::move(next));
+  const auto lost = [&](const auto& object) { return object && !engine_.owns(*object); };
+  if (lost(state_.resources) || lost(state_.environment)) {
+    // It was loaded just before the device was lost.
+    DeviceMigration migration(engine_);
+    session_->migrate(migration);
+    state_ = session_->render_state();
+  }
+  if (state_.resources != before.resources) renderer_->set_scene(state_.resources);
+  adopt_edits(before);
+  if (state_.reset_count != before.reset_count) {
+    renderer_->reset();
+    discontinuous_ = true;
+  }
+  const bool same_scene = state_.resources == before.resources;
+  const bool resized = state_.width != before.width || state_.height != before.height;
+  if (resized || !same_scene) full_frame_time_ = {};
+  const bool jumped = state_.discontinuities != before.discontinuities;
+  if (jumped) renderer_->invalidate_history();
+  discontinuous_ |= resized || !same_scene || jumped;
+  if (same_scene && !scene::same_view(state_.camera, before.camera)) {
+    camera_moved_at_ = Clock::now();
+  }
+  adopt_pose();
+  apply(state_.settings);
+}
+
+/// What the session changed in the scene; a scene that is new to the renderer has no changes yet.
+void SessionView::adopt_edits(const RenderState& before) {
+  const bool same_scene = state_.resources == before.resources;
+  if (state_.lights != (same_scene ? before.lights : nullptr)) {
+    renderer_->set_lights(state_.lights ? *state_.lights : file_lights(*state_.scene));
+  }
+  if (state_.materials != (same_scene ? before.materials : nullptr)) {
+    renderer_->set_materials(state_.materials ? *state_.materials : state_.scene->materials);
+  }
+  if (state_.environment != (same_scene ? before.environment : nullptr)) {
+    renderer_->set_environment(state_.environment);
+    discontinuous_ = true;
+  }
+}
+
+/// The pose of the clip at this time, and the camera where the clip moves it.
+void SessionView::adopt_pose() {
+  const double seconds = state_.animation.at(state_.now());
+  if (const auto posed = renderer_->set_pose(state_.animation.clip, seconds); !posed) {
+    log_error({.session = session_->name()}, posed.error().message);
+  }
+  const scene::Clip* const clip =
+      state_.camera_follows ? scene::find_clip(*state_.scene, state_.animation.clip) : nullptr;
+  if (!clip) {
+    renderer_->set_camera(state_.camera);
+    return;
+  }
+  scene::Pose pose = scene::rest_pose(*state_.scene);
+  scene::evaluate(*state_.scene, *clip, seconds, pose);
+  renderer_->set_camera(scene::camera_at(*state_.scene, state_.camera, pose));
+}
+
+void SessionView::adopt_draw_scale() {
+  set_draw_scale(draw_scale({.now = Clock::now(),
+                             .camera_moved_at = camera_moved_at_,
+                             .animation_playing = state_.animation.playing,
+                             .full = {state_.width, state_.height},
+                             .full_frame_time = full_frame_time_,
+                             .frame_time = milliseconds(state_.settings.motion.frame_time),
+                             .least_scale = state_.settings.motion.scale,
+                             .scale = draw_scale_,
+                             .capture_pending = readers_.has_captures()}));
+}
+
+/// What will be read after a step is not known before it.
+void SessionView::keep_buffers() {
+  if (readers_.read_buffers()) buffers_read_at_ = Clock::now();
+  renderer_->keep_buffers(session_->timeline().in_lockstep() ||
+                          Clock::now() < buffers_read_at_ + keep_buffers_after);
+}
+
+/// The path traced reference is not reconstructed: where it is shown alone, frames are smaller.
+void SessionView::set_draw_scale(float scale) {
+  const bool reference = state_.settings.reference.use == protocol::ReferenceUse::always;
+  const float of_frame = reference ? scale : 1.0f;
+  draw_scale_ = scale;
+  renderer_->set_size(render::drawn_side(state_.width, of_frame),
+                      render::drawn_side(state_.height, of_frame));
+  renderer_->set_draw_scale(scale);
+}
+
+}  // namespace heliograph::session
