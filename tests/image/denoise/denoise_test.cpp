@@ -62,6 +62,7 @@ TEST(StaticView, ChangesLessWhereNoiseDecides) {
     protocol::Settings settings;
     settings.accumulation.max_samples = 4096;
     settings.accumulation.by_noise = by_noise;
+    settings.indirect.path_guiding = false;  // which still learns during the first samples
     SpheresRig rig(settings);
     std::vector<double> means;
     for (const std::uint32_t samples : {4u, 32u, 96u, 288u}) {

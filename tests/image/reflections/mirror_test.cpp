@@ -54,7 +54,7 @@ Errors reflection_errors(const scene::Environment& sky, float rotation, bool tra
   const scene::Camera camera = scene->cameras.at(0);
   RendererRig rig(scene, sky, camera, mirror_width, mirror_height);
   protocol::Settings settings;
-  settings.ambient.occlusion = false;
+  settings.ambient.occlusion = settings.indirect.enabled = false;  // of the environment alone
   settings.antialiasing.jitter = settings.antialiasing.temporal = false;
   settings.shadow_temporal.enabled = settings.shadow_blur.enabled = false;
   settings.specular_temporal.enabled = settings.specular_blur.enabled = false;
