@@ -7,16 +7,18 @@
 
 namespace heliograph::session {
 
-Worker::Worker(std::string name, std::size_t capacity)
-    : name_(std::move(name)), capacity_(capacity), thread_([this] { run(); }) {}
+Worker::Worker(std::string name, std::size_t capacity, std::size_t threads)
+    : name_(std::move(name)), capacity_(capacity) {
+  for (std::size_t i = 0; i < threads; ++i) threads_.emplace_back([this] { run(); });
+}
 
 void Worker::stop() {
   {
     const std::lock_guard lock(mutex_);
     if (std::exchange(stopping_, true)) return;
   }
-  condition_.notify_one();
-  thread_.join();
+  condition_.notify_all();
+  for (std::thread& thread : threads_) thread.join();
   queue_.clear();
 }
 

@@ -7,14 +7,15 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 namespace heliograph::session {
 
-/// One thread that runs tasks in order. An exception in a task is logged.
+/// Threads that run tasks, begun in order. An exception in a task is logged.
 class Worker {
  public:
   /// At most `capacity` tasks are queued.
-  Worker(std::string name, std::size_t capacity);
+  Worker(std::string name, std::size_t capacity, std::size_t threads = 1);
   ~Worker() { stop(); }
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
@@ -22,7 +23,7 @@ class Worker {
   /// False if the queue is full; then `task` was not taken.
   bool post(std::function<void()> task);
   bool has_room() const;
-  /// Waits for the running task; queued ones are destroyed without running, later ones refused.
+  /// Waits for the running tasks; queued ones are destroyed without running, later ones refused.
   void stop();
 
  private:
@@ -34,7 +35,7 @@ class Worker {
   std::condition_variable condition_;
   std::deque<std::function<void()>> queue_;
   bool stopping_ = false;
-  std::thread thread_;
+  std::vector<std::thread> threads_;
 };
 
 }  // namespace heliograph::session

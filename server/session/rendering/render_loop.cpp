@@ -16,9 +16,16 @@
 namespace heliograph::session {
 namespace {
 
-// One frame may wait while another is being encoded: the renderer stays at most one ahead.
-constexpr std::size_t max_queued_frames = 1;
+// One frame may wait for each that is being encoded: the renderer stays at most one ahead.
+constexpr std::size_t queued_frames_per_thread = 1;
+constexpr unsigned most_encoding_threads = 8;
 constexpr std::size_t max_queued_captures = 4;
+
+/// On a GPU half of the processors encode; where they draw the frames, one thread is enough.
+std::size_t encoding_threads(const render::DeviceInfo& device) {
+  if (device.type == protocol::DeviceType::cpu) return 1;
+  return std::clamp(std::thread::hardware_concurrency() / 2, 1u, most_encoding_threads);
+}
 
 void log_shaders(const render::ShaderReport& report) {
   if (!report.error.empty()) {
@@ -35,7 +42,8 @@ void log_shaders(const render::ShaderReport& report) {
 RenderLoop::RenderLoop(render::Engine& engine, Clock::duration release_after)
     : engine_(engine),
       release_after_(release_after),
-      encoder_("encoder", max_queued_frames),
+      encoder_("encoder", queued_frames_per_thread * encoding_threads(engine.device()),
+               encoding_threads(engine.device())),
       capture_writer_("capture writer", max_queued_captures),
       thread_([this] { run(); }) {
   engine_.on_shader_change([wake = wake_](const render::ShaderReport& report) {

@@ -18,8 +18,8 @@ struct ViewServices {
   WakeEvent& wake;                // of the render thread
   Clock::duration release_after;  // without viewers for so long, the renderer is released
   Worker& encoder;                // of streamed frames
-  stream::JpegEncoder& jpeg;      // used by `encoder` only
-  Worker& capture_writer;         // of files, which take longer
+  stream::JpegEncoder& jpeg;
+  Worker& capture_writer;  // of files, which take longer
   Measurements& measurements;
 };
 

@@ -16,7 +16,7 @@ namespace heliograph::session {
 /// What a broadcast works with.
 struct BroadcastServices {
   Worker& encoder;
-  stream::JpegEncoder& jpeg;  // used by `encoder` only
+  stream::JpegEncoder& jpeg;
   Measurements& measurements;
   std::shared_ptr<WakeEvent> wake;  // notified when a frame has been encoded
   protocol::TracerKind tracer;
@@ -54,7 +54,7 @@ class Broadcast {
 
   std::shared_ptr<Session> session_;
   BroadcastServices services_;
-  std::shared_ptr<stream::FrameEncoder> encoder_;  // used by the encoding thread
+  std::shared_ptr<stream::FrameEncoder> encoder_;  // used by the task that encodes
   std::shared_ptr<std::atomic<int>> encoding_;     // tasks that are not done
   std::shared_ptr<const RenderedFrame> newest_;
   std::shared_ptr<const RenderedFrame> due_;  // to be sent

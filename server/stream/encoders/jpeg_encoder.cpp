@@ -19,13 +19,45 @@ constexpr int max_side = 65500;
 struct JpegEncoder::State {
   std::unique_ptr<void, HandleDeleter> handle{tjInitCompress()};
   std::vector<std::uint8_t> buffer;  // as large as the largest encoded image so far
+
+  std::vector<std::uint8_t> encode(const ImageView& image, int quality, int subsampling) {
+    const int width = static_cast<int>(image.width);
+    const int height = static_cast<int>(image.height);
+    const std::size_t worst = tjBufSize(width, height, subsampling);
+    if (buffer.size() < worst) buffer.resize(worst);
+    unsigned char* out = buffer.data();
+    unsigned long size = buffer.size();
+    const int failed = tjCompress2(handle.get(), image.rgba.data(), width, 0, height, TJPF_RGBX,
+                                   &out, &size, subsampling, quality, TJFLAG_NOREALLOC);
+    if (failed) throw std::runtime_error(std::string("JPEG: ") + tjGetErrorStr2(handle.get()));
+    return {out, out + size};
+  }
 };
 
-JpegEncoder::JpegEncoder() : state_(std::make_unique<State>()) {
-  if (!state_->handle) throw std::runtime_error("JPEG: cannot initialize libjpeg-turbo");
+JpegEncoder::JpegEncoder() {
+  give_back(take());
 }
 
 JpegEncoder::~JpegEncoder() = default;
+
+std::unique_ptr<JpegEncoder::State> JpegEncoder::take() {
+  {
+    const std::lock_guard lock(mutex_);
+    if (!free_.empty()) {
+      std::unique_ptr<State> state = std::move(free_.back());
+      free_.pop_back();
+      return state;
+    }
+  }
+  auto made = std::make_unique<State>();
+  if (!made->handle) throw std::runtime_error("JPEG: cannot initialize libjpeg-turbo");
+  return made;
+}
+
+void JpegEncoder::give_back(std::unique_ptr<State> state) {
+  const std::lock_guard lock(mutex_);
+  free_.push_back(std::move(state));
+}
 
 std::vector<std::uint8_t> JpegEncoder::encode(const ImageView& image, int quality,
                                               ChromaSampling sampling) {
@@ -33,20 +65,11 @@ std::vector<std::uint8_t> JpegEncoder::encode(const ImageView& image, int qualit
     throw std::runtime_error(
         "JPEG: images must be complete and at most 65535 pixels wide and high");
   }
-  const int width = static_cast<int>(image.width);
-  const int height = static_cast<int>(image.height);
-  const int subsampling = sampling == ChromaSampling::full ? TJSAMP_444 : TJSAMP_420;
-  const std::size_t worst = tjBufSize(width, height, subsampling);
-  if (state_->buffer.size() < worst) state_->buffer.resize(worst);
-
-  unsigned char* out = state_->buffer.data();
-  unsigned long size = state_->buffer.size();
-  const int failed = tjCompress2(state_->handle.get(), image.rgba.data(), width, 0, height,
-                                 TJPF_RGBX, &out, &size, subsampling, quality, TJFLAG_NOREALLOC);
-  if (failed) {
-    throw std::runtime_error(std::string("JPEG: ") + tjGetErrorStr2(state_->handle.get()));
-  }
-  return {out, out + size};
+  std::unique_ptr<State> state = take();
+  auto bytes =
+      state->encode(image, quality, sampling == ChromaSampling::full ? TJSAMP_444 : TJSAMP_420);
+  give_back(std::move(state));
+  return bytes;
 }
 
 }  // namespace heliograph::stream

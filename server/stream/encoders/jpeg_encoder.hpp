@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "stream/encoders/image_view.hpp"
@@ -11,7 +12,8 @@ namespace heliograph::stream {
 /// Resolution of the colour channels: half is 4:2:0, full is 4:4:4.
 enum class ChromaSampling { half, full };
 
-/// Encodes images with libjpeg-turbo; reuses its state and buffer. One thread at a time.
+/// Encodes images with libjpeg-turbo; reuses its states and buffers, one for each of the threads
+/// that encode at the same time. Thread safe.
 class JpegEncoder {
  public:
   /// @throws std::runtime_error if the library cannot be initialized
@@ -26,7 +28,11 @@ class JpegEncoder {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  std::unique_ptr<State> take();
+  void give_back(std::unique_ptr<State> state);
+
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<State>> free_;
 };
 
 }  // namespace heliograph::stream

@@ -2,9 +2,11 @@
 #include <png.h>
 #include <turbojpeg.h>
 
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 #include "stream/encoders/base64.hpp"
@@ -64,6 +66,28 @@ double mean_error(const std::vector<std::uint8_t>& a, const std::vector<std::uin
     if (i % 4 != 3) sum += std::abs(a[i] - b[i]);
   }
   return sum / (0.75 * static_cast<double>(a.size()));
+}
+
+TEST(Jpeg, ThreadsEncodeAtTheSameTime) {
+  JpegEncoder encoder;
+  std::array<Pixels, 4> images;
+  std::array<std::vector<std::uint8_t>, 4> alone;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    images[i] = test_image(64 + 16 * static_cast<std::uint32_t>(i), 48);
+    alone[i] = encoder.encode(images[i].view(), 80, ChromaSampling::half);
+  }
+  std::array<int, 4> same{};
+  {
+    std::vector<std::jthread> threads;
+    for (std::size_t i = 0; i < images.size(); ++i) {
+      threads.emplace_back([&, i] {
+        for (int k = 0; k < 50; ++k) {
+          same[i] += encoder.encode(images[i].view(), 80, ChromaSampling::half) == alone[i];
+        }
+      });
+    }
+  }
+  for (const int count : same) EXPECT_EQ(count, 50);
 }
 
 TEST(JpegEncoder, KeepsSizeAndColours) {
