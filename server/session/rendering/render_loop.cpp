@@ -146,10 +146,12 @@ bool RenderLoop::advance_next(const Views& views) {
   }
   fair_share_.sort(ready);
   held_back_until_.reset();
+  const auto moving = std::ranges::count_if(views, [](const auto& view) { return view->moves(); });
   Views drawing;
   for (const FairShare::Key key : ready) {
     if (stopping_ || !device_ready_) return false;
     const auto& view = *std::ranges::find(views, key, &std::shared_ptr<SessionView>::get);
+    view->share_device(static_cast<std::size_t>(moving));
     const SessionView::Work work = advance(*view, false);
     if (work == SessionView::Work::small) return true;
     if (work == SessionView::Work::held_back) drawing.push_back(view);

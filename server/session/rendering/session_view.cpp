@@ -16,6 +16,8 @@ namespace {
 /// Histories are measured in seconds. After a pause the time since the last frame means nothing.
 constexpr float max_frame_seconds = 1.0f;
 constexpr std::chrono::seconds retry_delay{1};
+/// Longer than a session waits for its turn among many.
+constexpr std::chrono::seconds sharing_window{1};
 /// Frames of static views trace every sample: about how much longer they take than moving ones.
 constexpr int refining_frame_factor = 2;
 
@@ -188,10 +190,15 @@ void SessionView::measure_frame(ViewState state, Clock::duration taken) {
   const auto full = duration_cast<Clock::duration>(taken / time_share(draw_scale_));
   const bool known = full_frame_time_ > Clock::duration::zero();
   if (state == ViewState::moving) {
+    moving_frame_at_ = Clock::now();
     full_frame_time_ = known ? (3 * full_frame_time_ + full) / 4 : full;
   } else if (!known) {
     full_frame_time_ = full / refining_frame_factor;
   }
+}
+
+bool SessionView::moves() const {
+  return Clock::now() < moving_frame_at_ + sharing_window;
 }
 
 bool SessionView::is_full_size() const {

@@ -42,6 +42,10 @@ class SessionView {
 
   /// Whether there may be something to do.
   bool awake() const;
+  /// Whether its frames of a moving view take turns with those of other sessions.
+  bool moves() const;
+  /// How many sessions' do.
+  void share_device(std::size_t moving_sessions) { moving_sessions_ = moving_sessions; }
   /// What `advance` did: nothing, something short, a frame, or no frame although one is due.
   enum class Work { none, small, drawing, held_back };
   /// Does what is most urgent: at most one frame, and none unless it `may_draw`. The device may
@@ -107,6 +111,8 @@ class SessionView {
   RenderState state_;
   Clock::time_point camera_moved_at_;
   float draw_scale_ = 1.0f;            // of the renderer
+  Clock::time_point moving_frame_at_;  // the end of the newest moving frame
+  std::size_t moving_sessions_ = 1;
   Clock::duration full_frame_time_{};  // that moving frames take at full size; zero: not known
   std::shared_ptr<const RenderedFrame> newest_;
   std::uint64_t newest_version_ = 0;     // of the state that it shows

@@ -97,6 +97,7 @@ void SessionView::adopt_draw_scale() {
                              .full = {state_.width, state_.height},
                              .full_frame_time = full_frame_time_,
                              .frame_time = milliseconds(state_.settings.motion.frame_time),
+                             .moving_sessions = moving_sessions_ + (moves() ? 0 : 1),
                              .least_scale = state_.settings.motion.scale,
                              .scale = draw_scale_,
                              .capture_pending = readers_.has_captures()}));

@@ -69,7 +69,8 @@ float draw_scale(const ResolutionInputs& in) {
   if (in.frame_time == Clock::duration::zero()) return in.least_scale;
   const auto fits = [&](float scale) {
     const float margin = scale > in.scale ? step_up : scale == in.scale ? stay : 1.0f;
-    return time_share(scale) * static_cast<float>(in.full_frame_time.count()) <=
+    const auto turns = static_cast<float>(std::max<std::size_t>(in.moving_sessions, 1));
+    return turns * time_share(scale) * static_cast<float>(in.full_frame_time.count()) <=
            margin * static_cast<float>(in.frame_time.count());
   };
   for (const float scale : scale_steps) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -108,13 +109,14 @@ struct ResolutionInputs {
   DrawSize full;                      // the session's size
   Clock::duration full_frame_time{};  // that a moving frame takes at full size; zero: not known
   Clock::duration frame_time{};       // that it should take at most; zero: any is too long
+  std::size_t moving_sessions = 1;    // whose frames take turns on the device, this one's too
   float least_scale = 1.0f;           // of width and height
   float scale = 1.0f;                 // of the newest frame
   bool capture_pending = false;       // captures are of full resolution
 };
 
 /// The fraction of width and height to draw at: less than 1 while the camera moves or a clip plays
-/// and full frames are slow. Of a few steps, and it changes only where times differ clearly, since
+/// and full frames are slow, by themselves or because those of other sessions come in between. Of a few steps, and it changes only where times differ clearly, since
 /// every change scales all histories.
 float draw_scale(const ResolutionInputs& in);
 

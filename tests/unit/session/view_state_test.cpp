@@ -190,6 +190,19 @@ TEST(DrawScale, FollowsTheFrameTimeThatIsAskedFor) {
   EXPECT_EQ(draw_scale(in), 0.5f) << "always the least";
 }
 
+TEST(DrawScale, IsReducedWhereOtherSessionsMoveToo) {
+  ResolutionInputs in = moving_image();
+  in.full_frame_time = 20ms;
+  in.moving_sessions = 3;
+  EXPECT_EQ(draw_scale(in), 1.0f);
+  in.moving_sessions = 4;
+  EXPECT_EQ(draw_scale(in), 0.8f);
+  in.moving_sessions = 16;
+  EXPECT_EQ(draw_scale(in), 0.5f);
+  in.now = view_start + final_delay;
+  EXPECT_EQ(draw_scale(in), 1.0f) << "the camera is static";
+}
+
 TEST(DrawScale, StaysWhereTimesSwing) {
   ResolutionInputs in = moving_image();
   in.scale = 0.8f;
