@@ -1,0 +1,172 @@
+"""What is measured: the runs of heliograph-experiments, at a size that fits the machine."""
+
+import dataclasses
+
+LADDER = ("svgf", "rectification", "adapted", "separable", "reinhard")
+LATER = ("fast_history", "percentile", "gradient")
+UPSAMPLED = "best_upsampled"
+INDIRECT = "best_indirect"
+MOVEMENTS = ("static", "moving_camera", "moving_objects_light")
+REFLECTIONS = ("cubes_distance", "icosphere", "glossy_sponza_1", "glossy_sponza_2",
+               "glossy_sponza_3")
+SHADOWS = ("shadow_objects", "pillars", "breakfast_room")
+SCENES = REFLECTIONS + SHADOWS
+ROUGHNESS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.6, 1.0)
+ANGLES = (0.0, 0.5, 1.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0)
+
+
+@dataclasses.dataclass(frozen=True)
+class Size:
+    """How large a measurement is. Sweeps repeat it per value, technique, movement and seed."""
+    name: str
+    sweep: str              # frame size of figures 5 to 11
+    view: str               # frame size of images and times
+    frames: int
+    samples: int            # of ground truth
+    view_samples: int
+    seeds: tuple
+    texture_size: int
+    roughness: tuple = ROUGHNESS
+    angles: tuple = ANGLES
+    scenes: tuple = SCENES
+    frames_over_time: int = 64
+    frame_rate: int = 30
+
+    def values(self, scene):
+        return self.roughness if scene in REFLECTIONS else self.angles
+
+    def value_of_images(self, scene):
+        """The swept value that images, times and the comparison of all scenes show."""
+        wanted = 0.2 if scene in REFLECTIONS else 10.0
+        return min(self.values(scene), key=lambda value: abs(value - wanted))
+
+
+SIZES = {
+    "tiny": Size("tiny", "64x36", "64x36", 8, 8, 8, (1, 2), 32, (0.0, 0.2), (0.0, 10.0),
+                 ("cubes_distance", "breakfast_room"), 8),
+    "small": Size("small", "160x90", "320x180", 20, 128, 96, (1, 2, 3), 64),
+    "full": Size("full", "640x360", "1280x720", 60, 1024, 1024, (1, 2, 3, 4, 5, 6, 7, 8), 512,
+                 frame_rate=60),
+}
+
+
+@dataclasses.dataclass(frozen=True)
+class Unit:
+    """One run of heliograph-experiments; a finished one is not repeated."""
+    name: str
+    what: str
+    arguments: tuple
+    rows: int     # lines of progress that it prints
+    cost: float   # relative to other units
+
+
+def pixels(size):
+    width, height = size.split("x")
+    return int(width) * int(height)
+
+
+def heaviness(scene):
+    return 2.0 if "sponza" in scene else 1.0
+
+
+class Planner:
+    def __init__(self, size, device=""):
+        self.size = size
+        self.device = device
+
+    def unit(self, name, what, scene, frame_size, rows, frames, samples, *options):
+        arguments = ["--scenes", scene, "--size", frame_size, "--frames", str(frames),
+                     "--frame-rate", str(self.size.frame_rate), "--samples", str(samples),
+                     "--texture-size", str(self.size.texture_size), *options]
+        if self.device:
+            arguments += ["--device", self.device]
+        truth = 0 if "--without-quality" in options else samples
+        cost = pixels(frame_size) * heaviness(scene) * (rows * frames + 3 * truth)
+        return Unit(name, what, tuple(arguments), rows, cost)
+
+    def sweep(self, scene, value, presets, movements, seeds, name, *options):
+        size = self.size
+        rows = len(movements) * len(seeds) * (len(presets) + options.count("--variant"))
+        return self.unit(f"{name}_{scene}_{value:g}", f"quality of {scene} at {value:g}", scene,
+                         size.sweep, rows, size.frames, size.samples, "--values", f"{value:g}",
+                         "--presets", ",".join(presets), "--movements", ",".join(movements),
+                         "--seeds", ",".join(map(str, seeds)), "--without-timings", *options)
+
+    def sweeps(self):
+        """Figures 5 to 11, and the techniques that came later."""
+        for scene in ("cubes_distance", "breakfast_room"):
+            for value in self.size.values(scene):
+                yield self.sweep(scene, value, LADDER + ("best",), MOVEMENTS, self.size.seeds,
+                                 "sweep")
+
+    def later_techniques(self):
+        for scene in ("cubes_distance", "breakfast_room"):
+            for value in self.size.values(scene):
+                yield self.sweep(scene, value, LATER, MOVEMENTS, self.size.seeds[:1], "later")
+                yield dataclasses.replace(
+                    self.sweep(scene, value, ("best",), MOVEMENTS, self.size.seeds[:1],
+                               "upsampled", "--draw-scale", "0.67"),
+                    what=f"temporal upsampling, {scene} at {value:g}")
+
+    def all_scenes(self):
+        """Images of every scene, and its quality with every movement."""
+        size = self.size
+        for scene in size.scenes:
+            presets = LADDER + ("best",)
+            yield self.unit(f"view_{scene}", f"images of {scene}", scene, size.view,
+                            len(presets) * len(MOVEMENTS), size.frames, size.view_samples,
+                            "--values", f"{size.value_of_images(scene):g}", "--presets",
+                            ",".join(presets), "--seeds", str(size.seeds[0]), "--without-timings")
+
+    def indirect(self):
+        """Indirect diffuse light: compared with the path tracer with global illumination."""
+        size = self.size
+        for scene in size.scenes:
+            yield self.unit(f"indirect_{scene}", f"indirect light of {scene}", scene, size.sweep,
+                            2 * len(MOVEMENTS), size.frames, size.samples, "--values",
+                            f"{size.value_of_images(scene):g}", "--presets", "best,reinhard",
+                            "--truth", "full", "--seeds", str(size.seeds[0]), "--without-timings")
+
+    def times(self):
+        """Figures 12 to 17, then tables 1 and 2."""
+        size = self.size
+        for scene in ("cubes_distance", "breakfast_room"):
+            values = size.values(scene)
+            yield self.unit(f"times_{scene}", f"times of {scene}", scene, size.view,
+                            len(LADDER) * len(values), size.frames, size.samples,
+                            "--without-quality", "--movements", "static", "--presets",
+                            ",".join(LADDER), "--values", ",".join(f"{v:g}" for v in values))
+        for scene in size.scenes:
+            presets = LADDER + ("best",)
+            yield self.unit(f"rates_{scene}", f"frame rates of {scene}", scene, size.view,
+                            len(presets) * 2, size.frames, size.samples, "--without-quality",
+                            "--movements", "moving_camera,moving_objects_light", "--presets",
+                            ",".join(presets))
+
+    def over_time(self):
+        size = self.size
+        for scene in ("cubes_distance", "breakfast_room"):
+            for name, setting in (("denoised", "false"), ("accumulated", "true")):
+                yield self.unit(f"over_time_{name}_{scene}", f"static view of {scene} over time",
+                                scene, size.sweep, 4, size.frames_over_time, size.samples,
+                                "--without-quality", "--without-timings", "--over-time",
+                                "--values", f"{size.value_of_images(scene):g}",
+                                "--presets", "svgf,rectification,reinhard,best",
+                                "--set", f"accumulation.enabled={setting}")
+
+    def units(self):
+        """The most telling first: a page can be made of what is finished."""
+        return [*self.sweeps(), *self.all_scenes(), *self.times(), *self.over_time(),
+                *self.later_techniques(), *self.indirect()]
+
+    def comparison(self, preset, against):
+        """A preset of a file beside another, in every scene and with every movement."""
+        size = self.size
+        for scene in size.scenes:
+            values = size.values(scene)
+            chosen = sorted({values[0], values[len(values) // 2], size.value_of_images(scene)})
+            rows = 2 * len(MOVEMENTS) * (len(size.seeds) + 1) * len(chosen)
+            yield self.unit(f"preset_{scene}", f"both presets in {scene}", scene, size.sweep,
+                            rows, size.frames, size.samples, "--values",
+                            ",".join(f"{value:g}" for value in chosen), "--preset", preset,
+                            "--against", against, "--seeds", ",".join(map(str, size.seeds)))
