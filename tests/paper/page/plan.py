@@ -3,7 +3,7 @@
 import dataclasses
 
 LADDER = ("svgf", "rectification", "adapted", "separable", "reinhard")
-LATER = ("fast_history", "percentile", "gradient")
+LATER = ("best", "fast_history", "percentile", "gradient")
 UPSAMPLED = "best_upsampled"
 INDIRECT = "best_indirect"
 MOVEMENTS = ("static", "moving_camera", "moving_objects_light")
@@ -11,6 +11,11 @@ REFLECTIONS = ("cubes_distance", "icosphere", "glossy_sponza_1", "glossy_sponza_
                "glossy_sponza_3")
 SHADOWS = ("shadow_objects", "pillars", "breakfast_room")
 SCENES = REFLECTIONS + SHADOWS
+# The scenes of figures 5 to 11, and the movements that they show.
+SWEPT = {"cubes_distance": MOVEMENTS, "breakfast_room": ("static", "moving_objects_light")}
+# The movements of figures 18 and 19; of other scenes a moving camera is shown.
+SHOWN = {"cubes_distance": MOVEMENTS, "breakfast_room": ("moving_camera", "moving_objects_light"),
+         "shadow_objects": ("static", "moving_camera")}
 ROUGHNESS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.6, 1.0)
 ANGLES = (0.0, 0.5, 1.0, 2.0, 4.0, 6.0, 8.0, 10.0, 12.0)
 
@@ -22,6 +27,8 @@ class Size:
     sweep: str              # frame size of figures 5 to 11
     view: str               # frame size of images and times
     frames: int
+    view_frames: int
+    timed_frames: int
     samples: int            # of ground truth
     view_samples: int
     seeds: tuple
@@ -42,10 +49,10 @@ class Size:
 
 
 SIZES = {
-    "tiny": Size("tiny", "64x36", "64x36", 8, 8, 8, (1, 2), 32, (0.0, 0.2), (0.0, 10.0),
+    "tiny": Size("tiny", "64x36", "64x36", 8, 6, 6, 8, 8, (1, 2), 32, (0.0, 0.2), (0.0, 10.0),
                  ("cubes_distance", "breakfast_room"), 8),
-    "small": Size("small", "160x90", "320x180", 20, 128, 96, (1, 2, 3), 64),
-    "full": Size("full", "640x360", "1280x720", 60, 1024, 1024, (1, 2, 3, 4, 5, 6, 7, 8), 512,
+    "small": Size("small", "160x90", "256x144", 20, 16, 12, 64, 48, (1, 2, 3), 64),
+    "full": Size("full", "640x360", "1280x720", 60, 60, 60, 1024, 1024, (1, 2, 3, 4, 5, 6, 7, 8), 512,
                  frame_rate=60),
 }
 
@@ -74,74 +81,87 @@ class Planner:
         self.size = size
         self.device = device
 
-    def unit(self, name, what, scene, frame_size, rows, frames, samples, *options):
+    def unit(self, name, what, scene, frame_size, rows, frames, samples, *options, moments=1):
+        """moments: how many frames have ground truth"""
         arguments = ["--scenes", scene, "--size", frame_size, "--frames", str(frames),
-                     "--frame-rate", str(self.size.frame_rate), "--samples", str(samples),
+                     "--frame-rate", str(self.size.frame_rate), "--samples", str(max(1, samples)),
                      "--texture-size", str(self.size.texture_size), *options]
         if self.device:
             arguments += ["--device", self.device]
-        truth = 0 if "--without-quality" in options else samples
-        cost = pixels(frame_size) * heaviness(scene) * (rows * frames + 3 * truth)
+        cost = pixels(frame_size) * heaviness(scene) * (rows * frames + moments * samples)
         return Unit(name, what, tuple(arguments), rows, cost)
 
-    def sweep(self, scene, value, presets, movements, seeds, name, *options):
+    @staticmethod
+    def moments(movements):
+        """Ground truth of the frames that are compared: one in a static view, else three."""
+        return sum(1 if movement == "static" else 3 for movement in movements)
+
+    def sweep(self, scene, value, presets, movements, seeds, name, *options, truth=True):
+        """truth: whether an earlier unit has not left ground truth already"""
         size = self.size
-        rows = len(movements) * len(seeds) * (len(presets) + options.count("--variant"))
+        rows = len(movements) * len(seeds) * len(presets)
         return self.unit(f"{name}_{scene}_{value:g}", f"quality of {scene} at {value:g}", scene,
                          size.sweep, rows, size.frames, size.samples, "--values", f"{value:g}",
                          "--presets", ",".join(presets), "--movements", ",".join(movements),
-                         "--seeds", ",".join(map(str, seeds)), "--without-timings", *options)
+                         "--seeds", ",".join(map(str, seeds)), "--without-timings", *options,
+                         moments=self.moments(movements) if truth else 0)
 
     def sweeps(self):
-        """Figures 5 to 11, and the techniques that came later."""
-        for scene in ("cubes_distance", "breakfast_room"):
+        """Figures 5 to 11."""
+        for scene, movements in SWEPT.items():
             for value in self.size.values(scene):
-                yield self.sweep(scene, value, LADDER + ("best",), MOVEMENTS, self.size.seeds,
-                                 "sweep")
+                yield self.sweep(scene, value, LADDER, movements, self.size.seeds, "sweep")
 
     def later_techniques(self):
-        for scene in ("cubes_distance", "breakfast_room"):
+        """Further lines of these figures: techniques that the paper does not have."""
+        for scene, movements in SWEPT.items():
             for value in self.size.values(scene):
-                yield self.sweep(scene, value, LATER, MOVEMENTS, self.size.seeds[:1], "later")
-                yield dataclasses.replace(
-                    self.sweep(scene, value, ("best",), MOVEMENTS, self.size.seeds[:1],
-                               "upsampled", "--draw-scale", "0.67"),
-                    what=f"temporal upsampling, {scene} at {value:g}")
+                yield self.sweep(scene, value, LATER, movements, self.size.seeds[:1], "later",
+                                 truth=False)
+                yield self.sweep(scene, value, ("best",), movements, self.size.seeds[:1],
+                                 "upsampled", "--draw-scale", "0.67", truth=False)
 
-    def all_scenes(self):
-        """Images of every scene, and its quality with every movement."""
+    def images(self):
+        """Figures 18 and 19, and the strips of every scene."""
         size = self.size
         for scene in size.scenes:
+            movements = SHOWN.get(scene, ("moving_camera",))
             presets = LADDER + ("best",)
             yield self.unit(f"view_{scene}", f"images of {scene}", scene, size.view,
-                            len(presets) * len(MOVEMENTS), size.frames, size.view_samples,
+                            len(presets) * len(movements), size.view_frames, size.view_samples,
                             "--values", f"{size.value_of_images(scene):g}", "--presets",
-                            ",".join(presets), "--seeds", str(size.seeds[0]), "--without-timings")
+                            ",".join(presets), "--movements", ",".join(movements), "--seeds",
+                            str(size.seeds[0]), "--without-timings",
+                            moments=self.moments(movements))
+
+    def all_scenes(self):
+        """Every scene with every movement."""
+        for scene in self.size.scenes:
+            yield self.sweep(scene, self.size.value_of_images(scene),
+                             ("svgf", "rectification", "reinhard", "best"), MOVEMENTS,
+                             self.size.seeds[:1], "scene")
 
     def indirect(self):
         """Indirect diffuse light: compared with the path tracer with global illumination."""
-        size = self.size
-        for scene in size.scenes:
-            yield self.unit(f"indirect_{scene}", f"indirect light of {scene}", scene, size.sweep,
-                            2 * len(MOVEMENTS), size.frames, size.samples, "--values",
-                            f"{size.value_of_images(scene):g}", "--presets", "best,reinhard",
-                            "--truth", "full", "--seeds", str(size.seeds[0]), "--without-timings")
+        for scene in self.size.scenes:
+            yield self.sweep(scene, self.size.value_of_images(scene), ("best", "reinhard"),
+                             ("moving_camera",), self.size.seeds[:1], "indirect", "--truth",
+                             "full")
 
     def times(self):
         """Figures 12 to 17, then tables 1 and 2."""
         size = self.size
-        for scene in ("cubes_distance", "breakfast_room"):
+        presets = LADDER + ("best",)
+        for scene in SWEPT:
             values = size.values(scene)
             yield self.unit(f"times_{scene}", f"times of {scene}", scene, size.view,
-                            len(LADDER) * len(values), size.frames, size.samples,
+                            len(presets) * len(values), size.timed_frames, 0,
                             "--without-quality", "--movements", "static", "--presets",
-                            ",".join(LADDER), "--values", ",".join(f"{v:g}" for v in values))
+                            ",".join(presets), "--values", ",".join(f"{v:g}" for v in values))
         for scene in size.scenes:
-            presets = LADDER + ("best",)
-            yield self.unit(f"rates_{scene}", f"frame rates of {scene}", scene, size.view,
-                            len(presets) * 2, size.frames, size.samples, "--without-quality",
-                            "--movements", "moving_camera,moving_objects_light", "--presets",
-                            ",".join(presets))
+            yield self.unit(f"rates_{scene}", f"frame rates of {scene}", scene, size.view, 4,
+                            size.timed_frames, 0, "--without-quality", "--movements",
+                            "moving_camera,moving_objects_light", "--presets", "reinhard,best")
 
     def over_time(self):
         size = self.size
@@ -156,8 +176,8 @@ class Planner:
 
     def units(self):
         """The most telling first: a page can be made of what is finished."""
-        return [*self.sweeps(), *self.all_scenes(), *self.times(), *self.over_time(),
-                *self.later_techniques(), *self.indirect()]
+        return [*self.sweeps(), *self.images(), *self.times(), *self.all_scenes(),
+                *self.over_time(), *self.later_techniques(), *self.indirect()]
 
     def comparison(self, preset, against):
         """A preset of a file beside another, in every scene and with every movement."""
