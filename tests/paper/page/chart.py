@@ -47,7 +47,7 @@ class Chart:
         self.caption = caption
         self.series = []
         with matplotlib.rc_context(STYLE):
-            self.figure = Figure(figsize=(width or max(4.6, 3.2 * panels), height))
+            self.figure = Figure(figsize=(width or max(9.0, 3.5 * panels), height))
             self.axes = self.figure.subplots(1, panels, sharey=share_y, squeeze=False)[0]
 
     def remember(self, axes, identifier, label, x, y, source, low=None, high=None):

@@ -115,6 +115,23 @@ def verdict_of(test):
     return REPRODUCED if test.p < SIGNIFICANT else NOT_REPRODUCED
 
 
+def observed(kind, test, margin=0.0):
+    """What the data say where a statement is not reproduced."""
+    if kind == "similar":
+        return (f"The change is larger than ±{margin:g}." if abs(test.mean) > margin
+                else "The seeds scatter too much to tell.")
+    opposite = test.low > 0.0 if kind in DOWNWARD else test.high < 0.0
+    return ("The change goes the other way." if opposite
+            else "There is no change beyond the noise of the seeds.")
+
+
+def explanation(key, verdict, kind, test, margin=0.0):
+    if verdict == OPEN:
+        return "The seeds of this run are too few."
+    said = observed(kind, test, margin) if verdict == NOT_REPRODUCED else ""
+    return f"{said} {reasons.why(key, verdict)}".strip()
+
+
 def evaluate(results):
     outcomes = []
     for finding in paper.FINDINGS:
@@ -130,5 +147,7 @@ def evaluate(results):
         if test.count > 1:
             change += f" ({test.low:+.4f} to {test.high:+.4f}, {test.count} seeds)"
         outcomes.append(Outcome(finding.key, finding.figure, finding.statement, words(finding),
-                                change, test.p, verdict, reasons.why(finding.key, verdict)))
+                                change, test.p, verdict,
+                                explanation(finding.key, verdict, finding.kind, test,
+                                            finding.margin)))
     return outcomes

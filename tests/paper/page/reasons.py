@@ -1,10 +1,9 @@
-"""Why a statement of the paper holds in this renderer, or does not."""
+"""Why a statement of the paper holds in this renderer, or does not: what we know of the cause."""
 
 HOLDS = {}
 HOLDS_NOT = {}
-UNDECIDED = "The seeds of this run are too few."
 
 
 def why(key, verdict):
-    return {"reproduced": HOLDS.get(key, ""),
-            "not reproduced": HOLDS_NOT.get(key, "")}.get(verdict, UNDECIDED)
+    """@return the empty text where we know no cause"""
+    return (HOLDS if verdict == "reproduced" else HOLDS_NOT).get(key, "")

@@ -7,6 +7,7 @@ import pathlib
 import statistics
 
 from plan import INDIRECT, UPSAMPLED
+from stages import stage_of
 
 QUALITY = "quality.csv"
 TIMES = "timings.csv"
@@ -48,7 +49,10 @@ class Results:
             for name, rows in self.rows.items():
                 for row in read(unit / name):
                     named = name_of(kind, row["preset"])
-                    rows.append({"unit": unit.name, "kind": kind, **row, "preset": named})
+                    row = {"unit": unit.name, "kind": kind, **row, "preset": named}
+                    if name == PASSES:
+                        row["stage"] = stage_of(row["pass"])
+                    rows.append(row)
             self.runs[unit.name] = json.loads((unit / "experiments.json").read_text())["run"]
 
     def quality(self, kind, scene, movement, preset, measure="ssim"):

@@ -5,7 +5,7 @@ import math
 import paired
 import paper
 import reasons
-from findings import NOT_REPRODUCED, OPEN, REPRODUCED, SIGNIFICANT, Outcome
+from findings import NOT_REPRODUCED, OPEN, REPRODUCED, Outcome, explanation, verdict_of
 from time_charts import CHANNELS, nearest, stage_curve
 
 SHADOWS, REFLECTIONS = "breakfast_room", "cubes_distance"
@@ -23,16 +23,16 @@ def relative(pairs):
     return [difference / before for difference, before in pairs if before > 0.0]
 
 
-def outcome(key, figure, statement, words, test, unit="%", factor=100.0):
+def outcome(key, figure, statement, words, test, kind, margin=0.0):
+    """test: of relative changes"""
     if test is None:
         return Outcome(key, figure, statement, words, "not measured", math.nan, OPEN,
                        "These times were not part of this run.")
-    verdict = OPEN if math.isnan(test.p) else (
-        REPRODUCED if test.p < SIGNIFICANT else NOT_REPRODUCED)
-    change = (f"{factor * test.mean:+.1f} {unit} ({factor * test.low:+.1f} to "
-              f"{factor * test.high:+.1f}, {test.count} values)")
+    verdict = verdict_of(test)
+    change = (f"{100.0 * test.mean:+.1f} % ({100.0 * test.low:+.1f} to "
+              f"{100.0 * test.high:+.1f}, {test.count} pairs)")
     return Outcome(key, figure, statement, words, change, test.p, verdict,
-                   reasons.why(key, verdict))
+                   explanation(key, verdict, kind, test, margin))
 
 
 def tested(differences, test, *options):
@@ -49,7 +49,7 @@ def blur_iterations(results):
     times = [passes.get(f"specular.atrous.{level}") for level in range(4)]
     statement = "All blur iterations take a similar time (1.93, 1.87, 1.86, 1.86 ms)"
     if not all(times):
-        return outcome("12-iterations", 12, statement, "", None)
+        return outcome("12-iterations", 12, statement, "", None, "similar")
     mean = sum(times) / 4.0
     spread = (max(times) - min(times)) / mean
     verdict = REPRODUCED if spread < 0.15 else NOT_REPRODUCED
@@ -76,25 +76,26 @@ def evaluate(results):
         found.append(outcome(
             f"{figure}-slower", figure, f"History rectification slightly increases the time of "
             f"{light}", "time of accumulation: the change is above 0",
-            tested(step(results, scene, "svgf", "rectification", 1), paired.rises)))
+            tested(step(results, scene, "svgf", "rectification", 1), paired.rises), "rises"))
     found.append(blur_iterations(results))
     found.append(outcome(
         "12-divergence", 12, "Ray tracing takes longer as roughness rises",
         "slope of the time of reflection rays, of its mean per unit of roughness: above 0",
-        tested(trace_over_roughness(results), paired.rises)))
+        tested(trace_over_roughness(results), paired.rises), "rises"))
     found.append(outcome(
         "14-slower", 14, "Adapted blur: slightly slower reflections",
         "time of reflection blur: the change is above 0",
-        tested(step(results, REFLECTIONS, "rectification", "adapted", 2), paired.rises)))
+        tested(step(results, REFLECTIONS, "rectification", "adapted", 2), paired.rises), "rises"))
     found.append(outcome(
         "15-similar", 15, "Adapted blur: shadows stay similar",
         "time of shadow blur: the change lies within ±10 %",
-        tested(step(results, SHADOWS, "rectification", "adapted", 2), paired.similar, 0.1)))
+        tested(step(results, SHADOWS, "rectification", "adapted", 2), paired.similar, 0.1),
+        "similar", 0.1))
     for scene, figure, light in ((REFLECTIONS, 16, "reflections"), (SHADOWS, 17, "shadows")):
         found.append(outcome(
             f"{figure}-faster", figure, f"Separable blur greatly improves the time of {light}",
             "time of the blur: the change is below 0",
-            tested(step(results, scene, "adapted", "separable", 2), paired.falls)))
+            tested(step(results, scene, "adapted", "separable", 2), paired.falls), "falls"))
     rates = {scene: results.rates(scene, "reinhard") for scene in paper.RATES}
     rates = {scene: rate for scene, rate in rates.items() if rate}
     if rates:
