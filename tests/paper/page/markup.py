@@ -45,8 +45,10 @@ def figure(chart):
     files = sorted({series["source"]["file"] for series in chart.series if series["source"]})
     links = ", ".join(f'<a href="data/{name}">{name}</a>' for name in files)
     beside = f" Data: {links}." if links else ""
-    body = (f'<figure><div class="plot" role="img" aria-label="{escape(chart.title)}">'
-            f"{chart.svg()}</div><figcaption>{escape(chart.caption)}{beside}</figcaption></figure>"
+    name = escape(chart.title)
+    body = (f'<figure><div class="plot" tabindex="0" role="region" aria-label="{name}">'
+            f'<div role="img" aria-label="Plot; its numbers are in the table below">'
+            f"{chart.svg()}</div></div><figcaption>{escape(chart.caption)}{beside}</figcaption></figure>"
             f"<details><summary>Numbers</summary>{numbers_of(chart)}</details>")
     return section(chart.key, chart.title, body, 3)
 

@@ -49,8 +49,8 @@ class Size:
 
 
 SIZES = {
-    "tiny": Size("tiny", "64x36", "64x36", 8, 6, 6, 8, 8, (1, 2), 32, (0.0, 0.2), (0.0, 10.0),
-                 ("cubes_distance", "breakfast_room"), 8),
+    "tiny": Size("tiny", "64x36", "64x36", 4, 4, 4, 4, 4, (1, 2), 32, (0.0, 0.2), (0.0, 10.0),
+                 ("cubes_distance", "breakfast_room"), 6),
     "small": Size("small", "160x90", "256x144", 20, 16, 12, 64, 48, (1, 2, 3), 64),
     "full": Size("full", "640x360", "1280x720", 60, 60, 60, 1024, 1024, (1, 2, 3, 4, 5, 6, 7, 8), 512,
                  frame_rate=60),

@@ -81,11 +81,14 @@ class Results:
 
     def mean_passes(self, scene, preset):
         """{pass: milliseconds}, the mean of the movements, of the runs of frame rates."""
-        found = collections.defaultdict(list)
-        for row in self.rows[PASSES]:
-            if (row["kind"], row["scene"], row["preset"]) == ("rates", scene, preset):
-                found[row["pass"]].append(float(row["ms"]))
-        return {name: statistics.fmean(times) for name, times in found.items()}
+        rows = [row for row in self.rows[PASSES]
+                if (row["kind"], row["scene"], row["preset"]) == ("rates", scene, preset)]
+        movements = {row["movement"] for row in rows}
+        sums = collections.Counter()
+        for row in rows:
+            # A pass that one movement does not have took no time there.
+            sums[row["pass"]] += float(row["ms"]) / len(movements)
+        return sums
 
     def rates(self, scene, preset):
         """(max, avg, min) frames per second over both movements, or None."""
