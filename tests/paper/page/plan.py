@@ -176,8 +176,8 @@ class Planner:
 
     def units(self):
         """The most telling first: a page can be made of what is finished."""
-        return [*self.sweeps(), *self.images(), *self.times(), *self.all_scenes(),
-                *self.over_time(), *self.later_techniques(), *self.indirect()]
+        return [*self.sweeps(), *self.times(), *self.images(), *self.over_time(),
+                *self.later_techniques(), *self.indirect(), *self.all_scenes()]
 
     def comparison(self, preset, against):
         """A preset of a file beside another, in every scene and with every movement."""
