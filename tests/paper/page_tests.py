@@ -5,6 +5,7 @@ import io
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -155,6 +156,50 @@ class Statements(unittest.TestCase):
         falls = findings.run_test(paper.Finding("x", 5, "", "falls", ("static",), ()),
                                   [0.02, 0.021, 0.022])
         self.assertEqual(findings.verdict_of(falls), findings.NOT_REPRODUCED)
+
+
+@unittest.skipUnless(BINARY, "HELIOGRAPH_EXPERIMENTS is not set")
+class PresetPage(unittest.TestCase):
+    def make(self, folder, *options):
+        return subprocess.run(
+            [sys.executable, HERE / "page" / "make_page.py", "--binary", BINARY, "--size", "tiny",
+             "--output", folder, *options], capture_output=True, text=True)
+
+    def test_two_presets_are_compared_in_every_scene(self):
+        """One has no denoiser at all."""
+        with tempfile.TemporaryDirectory() as folder:
+            preset = pathlib.Path(folder) / "noisy.json"
+            preset.write_text(json.dumps({
+                "extends": "svgf", "specular_temporal": {"enabled": False},
+                "specular_blur": {"enabled": False}, "shadow_temporal": {"enabled": False},
+                "shadow_blur": {"enabled": False}}))
+            done = self.make(folder, "--preset", preset, "--against", "best")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            page = pathlib.Path(done.stdout.strip())
+            text = page.read_text()
+            settings = json.loads((page.parent / "data" / "settings.json").read_text())
+        self.assertIn("noisy against best", text)
+        rows = re.findall(r"<tr><th scope=\"row\">([^<]*)</th><td>([^<]*)</td><td>([^<]*)</td>"
+                          r"<td>([-+.\d]+) [^<]*</td><td>([.\d]+)</td><td>2</td>"
+                          r"<td><span class=\"verdict \w+\">([^<]*)", text)
+        self.assertEqual(len(rows), 2 * 3 * 3, "scenes, movements and measures")
+        for scene, movement, measured, change, p, verdict in rows:
+            with self.subTest(scene=scene, movement=movement, measure=measured):
+                self.assertEqual(verdict != "no difference beyond the seeds", float(p) < 0.05)
+                if measured == "SSIM":
+                    self.assertLess(float(change), 0.0)
+        self.assertFalse(settings["noisy"]["shadow_blur"]["enabled"])
+        self.assertTrue(settings["best"]["shadow_blur"]["enabled"])
+
+    def test_a_mistake_in_a_preset_is_named(self):
+        with tempfile.TemporaryDirectory() as folder:
+            preset = pathlib.Path(folder) / "wrong.json"
+            preset.write_text('{"shadow_blur": {"iteration": 3}}')
+            done = self.make(folder, "--preset", preset)
+            self.assertEqual(done.returncode, 1)
+            self.assertIn("shadow_blur.iteration", done.stderr)
+            done = self.make(folder, "--preset", "absent.json")
+            self.assertIn("absent.json: no such file", done.stderr)
 
 
 class Runner(unittest.TestCase):

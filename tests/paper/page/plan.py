@@ -38,6 +38,7 @@ class Size:
     scenes: tuple = SCENES
     frames_over_time: int = 64
     frame_rate: int = 30
+    together: bool = False  # all values of a sweep in one run: starting costs more than rendering
 
     def values(self, scene):
         return self.roughness if scene in REFLECTIONS else self.angles
@@ -50,7 +51,7 @@ class Size:
 
 SIZES = {
     "tiny": Size("tiny", "64x36", "64x36", 4, 4, 4, 4, 4, (1, 2), 32, (0.0, 0.2), (0.0, 10.0),
-                 ("cubes_distance", "breakfast_room"), 6),
+                 ("cubes_distance", "breakfast_room"), 6, together=True),
     "small": Size("small", "160x90", "256x144", 20, 16, 12, 64, 48, (1, 2, 3), 64),
     "full": Size("full", "640x360", "1280x720", 60, 60, 60, 1024, 1024, (1, 2, 3, 4, 5, 6, 7, 8), 512,
                  frame_rate=60),
@@ -96,30 +97,33 @@ class Planner:
         """Ground truth of the frames that are compared: one in a static view, else three."""
         return sum(1 if movement == "static" else 3 for movement in movements)
 
-    def sweep(self, scene, value, presets, movements, seeds, name, *options, truth=True):
+    def sweep(self, name, scene, values, presets, movements, seeds, *options, truth=True):
         """truth: whether an earlier unit has not left ground truth already"""
         size = self.size
-        rows = len(movements) * len(seeds) * len(presets)
-        return self.unit(f"{name}_{scene}_{value:g}", f"quality of {scene} at {value:g}", scene,
-                         size.sweep, rows, size.frames, size.samples, "--values", f"{value:g}",
-                         "--presets", ",".join(presets), "--movements", ",".join(movements),
-                         "--seeds", ",".join(map(str, seeds)), "--without-timings", *options,
-                         moments=self.moments(movements) if truth else 0)
+        rows = len(values) * len(movements) * len(seeds) * len(presets)
+        texts = [f"{value:g}" for value in values]
+        return self.unit(name, f"quality of {scene} at {', '.join(texts)}", scene, size.sweep,
+                         rows, size.frames, size.samples, "--values", ",".join(texts), "--presets",
+                         ",".join(presets), "--movements", ",".join(movements), "--seeds",
+                         ",".join(map(str, seeds)), "--without-timings", *options,
+                         moments=len(values) * self.moments(movements) if truth else 0)
 
     def sweeps(self):
-        """Figures 5 to 11."""
+        """Figures 5 to 11. A unit per value, which can be kept, unless that costs more."""
         for scene, movements in SWEPT.items():
-            for value in self.size.values(scene):
-                yield self.sweep(scene, value, LADDER, movements, self.size.seeds, "sweep")
+            values = self.size.values(scene)
+            parts = [values] if self.size.together else [(value,) for value in values]
+            for part in parts:
+                name = "_".join(["sweep", scene, *(f"{value:g}" for value in part)])
+                yield self.sweep(name, scene, part, LADDER, movements, self.size.seeds)
 
     def later_techniques(self):
         """Further lines of these figures: techniques that the paper does not have."""
         for scene, movements in SWEPT.items():
-            for value in self.size.values(scene):
-                yield self.sweep(scene, value, LATER, movements, self.size.seeds[:1], "later",
-                                 truth=False)
-                yield self.sweep(scene, value, ("best",), movements, self.size.seeds[:1],
-                                 "upsampled", "--draw-scale", "0.67", truth=False)
+            values, seeds = self.size.values(scene), self.size.seeds[:1]
+            yield self.sweep(f"later_{scene}", scene, values, LATER, movements, seeds, truth=False)
+            yield self.sweep(f"upsampled_{scene}", scene, values, ("best",), movements, seeds,
+                             "--draw-scale", "0.67", truth=False)
 
     def images(self):
         """Figures 18 and 19, and the strips of every scene."""
@@ -137,16 +141,16 @@ class Planner:
     def all_scenes(self):
         """Every scene with every movement."""
         for scene in self.size.scenes:
-            yield self.sweep(scene, self.size.value_of_images(scene),
+            yield self.sweep(f"scene_{scene}", scene, (self.size.value_of_images(scene),),
                              ("svgf", "rectification", "reinhard", "best"), MOVEMENTS,
-                             self.size.seeds[:1], "scene")
+                             self.size.seeds[:1])
 
     def indirect(self):
         """Indirect diffuse light: compared with the path tracer with global illumination."""
         for scene in self.size.scenes:
-            yield self.sweep(scene, self.size.value_of_images(scene), ("best", "reinhard"),
-                             ("moving_camera",), self.size.seeds[:1], "indirect", "--truth",
-                             "full")
+            yield self.sweep(f"indirect_{scene}", scene, (self.size.value_of_images(scene),),
+                             ("best", "reinhard"), ("moving_camera",), self.size.seeds[:1],
+                             "--truth", "full")
 
     def times(self):
         """Figures 12 to 17, then tables 1 and 2."""
