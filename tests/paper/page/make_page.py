@@ -47,10 +47,9 @@ def units_of(chosen, size):
     return planner.units()
 
 
-def write(chosen, size, output):
-    results = Results(output)
+def write(chosen, size, output, results):
     if not results.units:
-        raise RuntimeError(f"nothing has been measured in {output}")
+        raise RuntimeError(f"nothing has been measured in {results.folder}")
     if chosen.preset:
         return [preset_page.write(results, size, output, chosen.preset.stem, chosen.against)]
     page = pages.Page(results, size, output)
@@ -68,9 +67,12 @@ def main():
         if not chosen.preset.is_file():
             raise RuntimeError(f"{chosen.preset}: no such file")
         output = output / f"preset_{chosen.preset.stem}_against_{chosen.against}"
+    # Sizes do not mix: each has a folder of its own.
+    runs = output / "runs" / size.name
+    units = units_of(chosen, size)
     if not chosen.without_measuring:
-        measure.measure(chosen.binary, units_of(chosen, size), output)
-    for path in write(chosen, size, output):
+        measure.measure(chosen.binary, units, runs)
+    for path in write(chosen, size, output, Results(runs, [unit.name for unit in units])):
         print(path)
 
 

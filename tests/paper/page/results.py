@@ -6,6 +6,7 @@ import json
 import pathlib
 import statistics
 
+from measure import DONE
 from plan import INDIRECT, UPSAMPLED
 from stages import stage_of
 
@@ -38,10 +39,11 @@ def name_of(kind, preset):
 class Results:
     """Rows of all units, as dictionaries of text, each with the unit's name and kind."""
 
-    def __init__(self, folder):
+    def __init__(self, folder, names):
+        """names: of the units that count; a folder may hold others, of an earlier plan"""
         self.folder = pathlib.Path(folder)
         units = self.folder / "units"
-        self.units = sorted(path for path in units.glob("*") if (path / "done.json").exists())
+        self.units = [units / name for name in sorted(names) if (units / name / DONE).exists()]
         self.rows = {name: [] for name in (QUALITY, TIMES, PASSES, OVER_TIME)}
         self.runs = {}
         for unit in self.units:
@@ -127,7 +129,7 @@ class Results:
 
     def seconds(self):
         """How long all measurements took."""
-        return sum(json.loads((unit / "done.json").read_text())["seconds"] for unit in self.units)
+        return sum(json.loads((unit / DONE).read_text())["seconds"] for unit in self.units)
 
     def write(self, folder):
         """The rows of all units in one file each, and the settings of every row."""
