@@ -36,14 +36,14 @@ def finding_lines(outcome):
     return lines
 
 
-def finding_pages(outcomes, most=44):
+def finding_pages(outcomes, most=58):
     pages = [[]]
     for outcome in outcomes:
         lines = finding_lines(outcome)
         if len(pages[-1]) + len(lines) > most:
             pages.append([])
         pages[-1] += [*lines, ""]
-    return [text_page("Findings of the paper", lines, 6.2) for lines in pages]
+    return [text_page("Findings of the paper", lines, 7.0) for lines in pages]
 
 
 def rate_lines(results):
