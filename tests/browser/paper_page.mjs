@@ -8,9 +8,19 @@ import { after, before, test } from "node:test";
 import { pathToFileURL } from "node:url";
 import { seriousFindings } from "./harness/axe.mjs";
 import { launchBrowser } from "./harness/browser.mjs";
+import { chromiumPath } from "./harness/environment.mjs";
 import { groupBy, mean, readCsv } from "./harness/csv.mjs";
 
 const folder = process.env.HELIOGRAPH_PAPER_PAGE;
+
+// What ctest reports as "skipped".
+function skip(reason) {
+  console.log(`skipped: ${reason}`);
+  process.exit(77);
+}
+if (!existsSync(chromiumPath)) skip(`no Chromium at ${chromiumPath}`);
+if (!existsSync(join(folder, "data/figures.json"))) skip(`no page of figures in ${folder}`);
+
 const figures = JSON.parse(readFileSync(join(folder, "data/figures.json"), "utf8"));
 const tables = Object.fromEntries(
   readdirSync(join(folder, "data"))
