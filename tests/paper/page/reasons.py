@@ -7,6 +7,8 @@ LESS_BLUR = ("The clamp also narrows the variance that guides the blur, so that 
              ".016 with the blur switched off.")
 SKIPS = ("A filter that starts at twice the distance skips neighbours that it could use; the loss is "
          "largest at the threshold.")
+SMALL = ("Small frames exaggerate blur: of 640x360 (tests/paper/README.md) the change at 8 degrees is "
+         "-.007.")
 DARKENS = ("The mean of compressed values is not the compressed mean: the preset loses some per cent "
            "of the light.")
 LATE_VARIANCE = ("Only the second half of a separable iteration updates the variance, as in the paper: "
@@ -27,7 +29,10 @@ HOLDS_NOT = {
     "5a-low": LESS_BLUR,
     "5b-mid": LESS_BLUR,
     "6-similar": SKIPS,
-    "10-similar": SKIPS,
+    "9a-high": "This frame size hides it: of 640x360 (tests/paper/README.md) the change "
+               "is -.010 at 6 and at 8 degrees, as in the paper.",
+    "10-similar": f"{SKIPS} {SMALL}",
+    "11-high": f"{LATE_VARIANCE} {SMALL}",
     "8-similar": DARKENS,
 }
 
