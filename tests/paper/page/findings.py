@@ -98,7 +98,7 @@ def least_similar(results, finding):
     tests = [paired.similar(list(of_seeds.values()), finding.margin)
              for movement in finding.movements
              for of_seeds in differences_by_seed(results, finding, movement).values()]
-    return max(tests, key=lambda test: (test.p, abs(test.mean)), default=None)
+    return max(tests, key=lambda test: (test.p >= SIGNIFICANT, abs(test.mean)), default=None)
 
 
 def run_test(finding, differences):
