@@ -23,7 +23,7 @@ HOLDS = {
     "8-slight": DARKENS,
     "11-low": LATE_VARIANCE,
     "12-iterations": "Every iteration reads as many neighbours, whatever their distance.",
-    "tables-30": "At this frame size, which is smaller than the paper's.",
+    "tables-30": "At this frame size; the text of the paper does not give its own.",
 }
 HOLDS_NOT = {
     "5a-low": LESS_BLUR,
