@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Configures and builds in build/ (or $HELIOGRAPH_BUILD) and generates the demo scene. Arguments are
-# passed to cmake.
+# Configures and builds in build/ (or $HELIOGRAPH_BUILD) and generates the demo scene, or builds
+# $HELIOGRAPH_TARGETS alone. Arguments are passed to cmake.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=${HELIOGRAPH_BUILD:-build}
@@ -18,7 +18,8 @@ if ! cmake -S . -B "$build" -G Ninja "${first[@]}" "$@" >"$log" 2>&1; then
   echo "build: cmake failed to configure; the end of its output is above" >&2
   exit 1
 fi
-echo "==> building, and generating the demo scene (a few minutes the first time)"
+read -ra targets <<<"${HELIOGRAPH_TARGETS:-all demo_scene}"
+echo "==> building ${targets[*]} (a few minutes the first time)"
 # Clones in different folders share what the compiler cache holds.
 export CCACHE_BASEDIR=${CCACHE_BASEDIR:-$PWD} CCACHE_NOHASHDIR=${CCACHE_NOHASHDIR:-1}
-ninja -C "$build" all demo_scene || { echo "build: compilation failed" >&2; exit 1; }
+ninja -C "$build" "${targets[@]}" || { echo "build: compilation failed" >&2; exit 1; }

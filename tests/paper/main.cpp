@@ -5,154 +5,60 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "protocol/settings/settings_json.hpp"
 #include "scenes/generator/scenes/paper_scenes.hpp"
+#include "tests/paper/options.hpp"
 #include "tests/paper/report.hpp"
 #include "tests/paper/stage.hpp"
 #include "tests/support/image_comparison.hpp"
+#include "tests/support/similarity.hpp"
 
 namespace heliograph::paper {
 namespace {
 
-/// Frames of one size as they are in memory, one after the other.
-void write_frames(const std::filesystem::path& path, const std::vector<render::Frame>& frames) {
-  std::filesystem::create_directories(path.parent_path());
-  std::ofstream file(path, std::ios::binary);
-  for (const render::Frame& frame : frames) {
-    file.write(reinterpret_cast<const char*>(frame.rgba.data()),
-               static_cast<std::streamsize>(frame.rgba.size()));
-  }
-  file.close();
-  if (!file) throw std::runtime_error("cannot write " + path.string());
-}
-
-std::vector<render::Frame> read_frames(const std::filesystem::path& path,
-                                       const StageOptions& stage) {
-  std::ifstream file(path, std::ios::binary);
-  std::vector<render::Frame> frames;
-  const std::size_t bytes = std::size_t{stage.width} * stage.height * 4;
-  const std::size_t count = std::filesystem::file_size(path) / bytes;
-  for (std::size_t i = 0; i < count; ++i) {
-    render::Frame& frame = frames.emplace_back();
-    frame.width = stage.width;
-    frame.height = stage.height;
-    frame.rgba.resize(bytes);
-    file.read(reinterpret_cast<char*>(frame.rgba.data()), static_cast<std::streamsize>(bytes));
-  }
-  if (!file) throw std::runtime_error("cannot read " + path.string());
-  return frames;
-}
-
-struct Options {
-  std::vector<std::string> scenes;
-  std::vector<std::string> presets;
-  std::vector<std::string> movements{"static", "moving_camera", "moving_objects_light"};
-  std::vector<float> values;
-  std::vector<std::string> settings;  // path=value, on top of every preset
-  std::vector<std::string> variants;  // name:path=value,path=value, on top of those of `best`
-  std::string size = "320x180";
-  int frames = 60;
-  int samples = 512;
-  int texture_size = 256;
-  float draw_scale = 1.0f;
-  float frame_rate = 60.0f;
-  std::string ground_truth = "reference";
-  std::string ground_truth_folder;
-  std::string output;
-  std::string device;
-  std::string tracer = "auto";
-  bool without_quality = false;
-  bool without_timings = false;
-
-  StageOptions stage() const {
-    StageOptions stage{.texture_size = texture_size, .draw_scale = draw_scale};
-    char end = 0;
-    if (std::sscanf(size.c_str(), "%ux%u%c", &stage.width, &stage.height, &end) != 2) {
-      throw std::invalid_argument("--size " + size + " must look like 640x360");
+/// One row with each seed; the last frame of the first is saved.
+void measure_row(const Stage& stage, const Options& options, const Row& row, const Shot& shot,
+                 const std::vector<render::Frame>& ground_truth, Measurement measurement,
+                 std::vector<Measurement>& measurements) {
+  auto [name, settings] = row;
+  for (const int seed : options.seeds) {
+    settings.sampling.seed = seed;
+    const Played played = stage.play(settings, shot);
+    if (seed == options.seeds.front()) {
+      test::save_image(image_name(measurement) + name, played.frames.back());
     }
-    return stage;
+    measurement.technique = name;
+    measurement.seed = seed;
+    measurement.quality = compare(played.frames, ground_truth);
+    std::fprintf(stderr, "%s%s: ssim %.4f flicker %.2f luminance %.3f rays %.3f\n",
+                 image_name(measurement).c_str(), name.c_str(), measurement.quality.ssim,
+                 measurement.quality.flicker, measurement.quality.luminance_ratio,
+                 played.rays_per_pixel);
+    measurements.push_back(measurement);
   }
-  protocol::Settings of(const std::string& preset) const {
-    protocol::Settings all =
-        find_technique(preset).settings(ground_truth == "full" ? Paths::all : Paths::of_paper);
-    for (const std::string& assignment : settings) assign(all, assignment);
-    return all;
-  }
-  /// The presets and the variants, by name.
-  std::vector<std::pair<std::string, protocol::Settings>> rows() const {
-    std::vector<std::pair<std::string, protocol::Settings>> all;
-    for (const std::string& preset : presets) all.emplace_back(preset, of(preset));
-    for (const std::string& variant : variants) {
-      const std::size_t colon = variant.find(':');
-      if (colon == std::string::npos) {
-        throw std::invalid_argument("--variant " + variant + " must look like NAME:PATH=VALUE");
-      }
-      protocol::Settings changed = of("best");
-      std::istringstream assignments(variant.substr(colon + 1));
-      for (std::string one; std::getline(assignments, one, ',');) assign(changed, one);
-      all.emplace_back(variant.substr(0, colon), changed);
-    }
-    return all;
-  }
-  /// Ground truth of a shot, from the folder of those that earlier runs have left.
-  std::vector<render::Frame> truth(const Stage& stage, const std::string& name,
-                                   const Shot& shot) const {
-    const GroundTruth source = ground_truth == "reference" ? GroundTruth::reference
-                               : ground_truth == "full"    ? GroundTruth::full
-                                                           : GroundTruth::accumulated;
-    if (ground_truth_folder.empty()) return stage.ground_truth(source, shot, samples);
-    std::ostringstream file;
-    file << name << size << '_' << frames << '_' << frame_rate << '_' << samples << '_'
-         << texture_size << '_' << ground_truth << ".rgba";
-    const auto path = std::filesystem::path(ground_truth_folder) / file.str();
-    if (std::filesystem::exists(path)) return read_frames(path, this->stage());
-    auto made = stage.ground_truth(source, shot, samples);
-    write_frames(path, made);
-    return made;
-  }
-  static void assign(protocol::Settings& all, const std::string& assignment) {
-    const auto accepted = protocol::set_by_path(all, assignment);
-    if (!accepted) throw std::invalid_argument(accepted.error().message);
-  }
-  Shot shot(const std::string& movement) const {
-    return {
-        .movement = parse_movement(movement), .frames = frames, .frame_seconds = 1.0f / frame_rate};
-  }
-};
-
-std::vector<float> values_for(const Options& options, Swept swept) {
-  if (!options.values.empty()) return options.values;
-  const auto all = paper_values(swept);
-  return {all.begin(), all.end()};
 }
 
-void measure_quality(render::Engine& engine, const Options& options,
-                     std::vector<Measurement>& measurements) {
+std::vector<Measurement> measure_quality(render::Engine& engine, const Options& options) {
+  std::vector<Measurement> measurements;
   for (const std::string& scene : options.scenes) {
     const Swept swept = swept_in(scene);
     const std::size_t first = measurements.size();
-    for (const float value : values_for(options, swept)) {
+    for (const float value : options.values_for(swept)) {
       const Stage stage(engine, scene, sweep_to(swept, value), options.stage());
       for (const std::string& movement : options.movements) {
         const Shot shot = options.shot(movement);
-        const std::string taken =
-            scene + "_" + std::to_string(int(100.0f * value)) + "_" + movement + "_";
-        const auto ground_truth = options.truth(stage, taken, shot);
-        test::save_image(taken + "ground_truth", ground_truth.back());
-        for (const auto& [row, settings] : options.rows()) {
-          const Played played = stage.play(settings, shot);
-          test::save_image(taken + row, played.frames.back());
-          const Quality quality = compare(played.frames, ground_truth);
-          measurements.push_back({scene, swept, value, shot.movement, row, quality});
-          std::fprintf(stderr, "%s %g %s %s: ssim %.4f flicker %.2f luminance %.3f rays %.3f\n",
-                       scene.c_str(), double(value), movement.c_str(), row.c_str(), quality.ssim,
-                       quality.flicker, quality.luminance_ratio, played.rays_per_pixel);
+        const Measurement measured{scene, swept, value, shot.movement, {}, {}};
+        const auto ground_truth = options.truth(stage, image_name(measured), shot);
+        test::save_image(image_name(measured) + "ground_truth", ground_truth.back());
+        for (const Row& row : options.rows()) {
+          measure_row(stage, options, row, shot, ground_truth, measured, measurements);
         }
       }
     }
@@ -161,27 +67,83 @@ void measure_quality(render::Engine& engine, const Options& options,
     std::fputs(quality_tables(of_scene).c_str(), stdout);
     std::fflush(stdout);
   }
+  return measurements;
+}
+
+/// The scene as it is, or with each swept value that the command line names.
+std::vector<std::optional<float>> values_to_time(const Options& options) {
+  if (options.values.empty()) return {std::nullopt};
+  return {options.values.begin(), options.values.end()};
+}
+
+scenes::Sweep sweep_of(const std::string& scene, std::optional<float> value) {
+  return value ? sweep_to(swept_in(scene), *value) : scenes::Sweep{};
 }
 
 std::vector<Timing> measure_times(render::Engine& engine, const Options& options) {
   constexpr int warm_up = 5;
   std::vector<Timing> timings;
   for (const std::string& scene : options.scenes) {
-    const Stage stage(engine, scene, {}, options.stage());
-    for (const std::string& movement : options.movements) {
-      for (const std::string& preset : options.presets) {
-        Shot shot = options.shot(movement);
-        shot.frames += warm_up;
-        Timing timing = summarise(stage.time(options.of(preset), shot), warm_up);
-        timing.scene = scene;
-        timing.technique = preset;
-        timing.movement = shot.movement;
-        timings.push_back(std::move(timing));
+    for (const std::optional<float> value : values_to_time(options)) {
+      const Stage stage(engine, scene, sweep_of(scene, value), options.stage());
+      for (const std::string& movement : options.movements) {
+        for (const auto& [row, settings] : options.rows()) {
+          Shot shot = options.shot(movement);
+          shot.frames += warm_up;
+          Timing timing = summarise(stage.time(settings, shot), warm_up);
+          timing.scene = scene;
+          timing.value = value;
+          timing.technique = row;
+          timing.movement = shot.movement;
+          std::fprintf(stderr, "%s %s %s: %.1f frames per second\n", scene.c_str(),
+                       movement.c_str(), row.c_str(), timing.mean_fps);
+          timings.push_back(std::move(timing));
+        }
       }
     }
   }
   std::fputs(timing_tables(timings).c_str(), stdout);
   return timings;
+}
+
+/// The similarity of every frame of a static view, from its first.
+std::vector<Moment> measure_over_time(render::Engine& engine, const Options& options) {
+  std::vector<Moment> moments;
+  for (const std::string& scene : options.scenes) {
+    for (const std::optional<float> value : values_to_time(options)) {
+      const Stage stage(engine, scene, sweep_of(scene, value), options.stage());
+      Shot shot = options.shot("static");
+      const std::string taken =
+          scene + "_" + (value ? std::to_string(int(100.0f * *value)) : "own");
+      const render::Frame truth = options.truth(stage, taken + "_static_", shot).back();
+      shot.compared = shot.frames;
+      for (const auto& [row, settings] : options.rows()) {
+        const Played played = stage.play(settings, shot);
+        for (std::size_t i = 0; i < played.frames.size(); ++i) {
+          moments.push_back({scene, row, value, int(i) + 1, test::ssim(played.frames[i], truth)});
+        }
+        std::fprintf(stderr, "%s %s: ssim %.4f after %d frames\n", scene.c_str(), row.c_str(),
+                     moments.back().ssim, shot.frames);
+      }
+    }
+  }
+  return moments;
+}
+
+nlohmann::json description(const render::Engine& engine, const Options& options) {
+  nlohmann::json rows = nlohmann::json::object();
+  for (const auto& [name, settings] : options.rows()) rows[name] = protocol::to_json(settings);
+  return {{"device", engine.device().name},
+          {"tracer", protocol::enum_name(engine.tracer())},
+          {"size", options.size},
+          {"frames", options.frames},
+          {"frame_rate", options.frame_rate},
+          {"samples", options.samples},
+          {"texture_size", options.texture_size},
+          {"draw_scale", options.draw_scale},
+          {"truth", options.ground_truth},
+          {"seeds", options.seeds},
+          {"settings", rows}};
 }
 
 void run(const Options& options) {
@@ -195,61 +157,13 @@ void run(const Options& options) {
               engine.device().name.c_str(),
               std::string(protocol::enum_name(engine.tracer())).c_str(), options.size.c_str(),
               options.frames, double(options.frame_rate), options.samples);
-  std::vector<Measurement> measurements;
-  std::vector<Timing> timings;
-  if (!options.without_quality) measure_quality(engine, options, measurements);
-  if (!options.without_timings) timings = measure_times(engine, options);
+  Results results;
+  if (!options.without_quality) results.measurements = measure_quality(engine, options);
+  if (!options.without_timings) results.timings = measure_times(engine, options);
+  if (options.over_time) results.moments = measure_over_time(engine, options);
   if (!options.output.empty()) {
-    write_files(options.output, measurements, timings, engine.device().name);
+    write_files(options.output, results, description(engine, options));
   }
-}
-
-void add_options(CLI::App& app, Options& options) {
-  app.add_option("--scenes", options.scenes, "Scenes of the paper [all eight]")->delimiter(',');
-  app.add_option("--presets", options.presets,
-                 "Rows: svgf, rectification, adapted, separable, reinhard, best, fast_history, "
-                 "percentile, gradient [all]")
-      ->delimiter(',');
-  app.add_option("--movements", options.movements, "Of static, moving_camera, moving_objects_light")
-      ->delimiter(',')
-      ->capture_default_str();
-  app.add_option("--values", options.values, "Swept values [the paper's]")->delimiter(',');
-  app.add_option("--set", options.settings, "A setting on top of every preset")
-      ->type_name("PATH=VALUE")
-      ->allow_extra_args(false);
-  app.add_option("--variant", options.variants,
-                 "A further row: the preset best with these settings on top")
-      ->type_name("NAME:PATH=VALUE,PATH=VALUE")
-      ->allow_extra_args(false);
-  app.add_option("--size", options.size, "Frame size")->capture_default_str();
-  app.add_option("--frames", options.frames, "Frames of each run")
-      ->check(CLI::Range(3, 100000))
-      ->capture_default_str();
-  app.add_option("--frame-rate", options.frame_rate, "Frames per second of clip time")
-      ->check(CLI::Range(1.0f, 1000.0f))
-      ->capture_default_str();
-  app.add_option("--samples", options.samples, "Samples per pixel of ground truth")
-      ->check(CLI::Range(1, 65536))
-      ->capture_default_str();
-  app.add_option("--texture-size", options.texture_size, "Width of the scenes' textures")
-      ->check(CLI::Range(16, 4096))
-      ->capture_default_str();
-  app.add_option("--draw-scale", options.draw_scale,
-                 "Fraction of width and height that frames are drawn at and reconstructed from")
-      ->check(CLI::Range(0.1f, 1.0f));
-  app.add_option("--truth", options.ground_truth,
-                 "The path tracer along the hybrid's light paths, the same with global "
-                 "illumination, or the hybrid's own samples averaged")
-      ->check(CLI::IsMember({"reference", "full", "accumulated"}))
-      ->capture_default_str();
-  app.add_option("--ground-truth-folder", options.ground_truth_folder,
-                 "Folder that keeps ground truth from run to run: rendered once for each case");
-  app.add_option("--output", options.output,
-                 "Folder for CSV, JSON and the last frame of every run");
-  app.add_option("--device", options.device, "Part of the Vulkan device's name");
-  app.add_option("--tracer", options.tracer, "Ray tracer")->capture_default_str();
-  app.add_flag("--without-quality", options.without_quality, "Only frame rates");
-  app.add_flag("--without-timings", options.without_timings, "Only quality");
 }
 
 }  // namespace

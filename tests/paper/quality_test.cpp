@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "tests/paper/report.hpp"
@@ -63,6 +67,51 @@ TEST(Report, HasRowPerTechniqueAndColumnPerValue) {
   EXPECT_NE(text.find("pillars, static, by angle"), std::string::npos);
   EXPECT_NE(text.find("  svgf              0.9100   0.8200"), std::string::npos) << text;
   EXPECT_NE(text.find("  best              0.9500   -"), std::string::npos) << text;
+}
+
+TEST(Report, TablesShowTheMeanOfAllSeeds) {
+  const std::vector<Measurement> measurements = {
+      {"pillars", Swept::angle, 2.0f, Movement::still, "svgf", {0.90, 1.0, 0.5}, 1},
+      {"pillars", Swept::angle, 2.0f, Movement::still, "svgf", {0.94, 1.0, 0.5}, 2}};
+  const std::string text = quality_tables(measurements);
+  EXPECT_NE(text.find("  svgf              0.9200"), std::string::npos) << text;
+}
+
+std::string content_of(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(Report, FilesHaveARowPerSeedPassAndMoment) {
+  Results results;
+  results.measurements = {
+      {"pillars", Swept::angle, 2.0f, Movement::still, "svgf", {0.5, 0.25, 1.5}, 7}};
+  Timing timing;
+  timing.scene = "pillars";
+  timing.technique = "svgf";
+  timing.slowest_fps = timing.mean_fps = timing.fastest_fps = 8.0;
+  timing.passes = {{"compose", protocol::PassKind::device, 0.5f}};
+  results.timings = {timing, timing};
+  results.timings.back().value = 2.0f;
+  results.moments = {{"pillars", "svgf", 2.0f, 3, 0.75}};
+  const auto folder = std::filesystem::temp_directory_path() / "heliograph_report_test";
+  write_files(folder, results, {{"size", "16x16"}});
+  EXPECT_EQ(content_of(folder / "quality.csv"),
+            "scene,swept,value,movement,preset,seed,ssim,flicker,luminance_ratio\n"
+            "pillars,angle,2,static,svgf,7,0.5,1.5,0.25\n");
+  EXPECT_EQ(content_of(folder / "timings.csv"),
+            "scene,value,movement,preset,min_fps,avg_fps,max_fps\n"
+            "pillars,,static,svgf,8,8,8\npillars,2,static,svgf,8,8,8\n");
+  EXPECT_EQ(content_of(folder / "passes.csv"),
+            "scene,value,movement,preset,pass,ms\n"
+            "pillars,,static,svgf,compose,0.5\npillars,2,static,svgf,compose,0.5\n");
+  EXPECT_EQ(content_of(folder / "over_time.csv"),
+            "scene,value,preset,frame,ssim\npillars,2,svgf,3,0.75\n");
+  const auto json = nlohmann::json::parse(content_of(folder / "experiments.json"));
+  EXPECT_EQ(json["run"]["size"], "16x16");
+  EXPECT_EQ(json["quality"][0]["seed"], 7);
+  EXPECT_TRUE(json["timings"][0]["value"].is_null());
+  std::filesystem::remove_all(folder);
 }
 
 TEST(Report, FrameRatesExcludeWarmUp) {

@@ -52,11 +52,14 @@ std::string table(const std::vector<Measurement>& rows, const Column& column) {
   for (const std::string& name : names) {
     text += padded("  " + name, 20);
     for (const float value : values) {
-      const auto found = std::find_if(rows.begin(), rows.end(), [&](const Measurement& m) {
-        return m.technique == name && m.value == value;
-      });
-      const bool measured = found != rows.end();
-      text += padded(measured ? number(found->quality.*column.member, column.decimals) : "-", 9);
+      double sum = 0.0;
+      int seeds = 0;
+      for (const Measurement& m : rows) {
+        if (m.technique != name || m.value != value) continue;
+        sum += m.quality.*column.member;
+        ++seeds;
+      }
+      text += padded(seeds > 0 ? number(sum / seeds, column.decimals) : "-", 9);
     }
     text += "\n";
   }
@@ -72,6 +75,7 @@ nlohmann::json to_json(const Timing& timing) {
   return {{"scene", timing.scene},
           {"preset", timing.technique},
           {"movement", name(timing.movement)},
+          {"value", timing.value ? nlohmann::json(*timing.value) : nlohmann::json()},
           {"min_fps", timing.slowest_fps},
           {"avg_fps", timing.mean_fps},
           {"max_fps", timing.fastest_fps},
@@ -84,9 +88,61 @@ nlohmann::json to_json(const Measurement& m) {
           {"value", m.value},
           {"movement", name(m.movement)},
           {"preset", m.technique},
+          {"seed", m.seed},
           {"ssim", m.quality.ssim},
           {"flicker", m.quality.flicker},
           {"luminance_ratio", m.quality.luminance_ratio}};
+}
+
+std::string quality_csv(const Results& results) {
+  std::ostringstream text;
+  text << "scene,swept,value,movement,preset,seed,ssim,flicker,luminance_ratio\n";
+  for (const Measurement& m : results.measurements) {
+    text << m.scene << ',' << name(m.swept) << ',' << m.value << ',' << name(m.movement) << ','
+         << m.technique << ',' << m.seed << ',' << m.quality.ssim << ',' << m.quality.flicker << ','
+         << m.quality.luminance_ratio << '\n';
+  }
+  return text.str();
+}
+
+/// Empty where a scene has its own materials and sun.
+std::string text_of(std::optional<float> value) {
+  std::ostringstream text;
+  if (value) text << *value;
+  return text.str();
+}
+
+std::string timings_csv(const Results& results) {
+  std::ostringstream text;
+  text << "scene,value,movement,preset,min_fps,avg_fps,max_fps\n";
+  for (const Timing& timing : results.timings) {
+    text << timing.scene << ',' << text_of(timing.value) << ',' << name(timing.movement) << ','
+         << timing.technique << ',' << timing.slowest_fps << ',' << timing.mean_fps << ','
+         << timing.fastest_fps << '\n';
+  }
+  return text.str();
+}
+
+std::string passes_csv(const Results& results) {
+  std::ostringstream text;
+  text << "scene,value,movement,preset,pass,ms\n";
+  for (const Timing& timing : results.timings) {
+    for (const render::PassTime& pass : timing.passes) {
+      text << timing.scene << ',' << text_of(timing.value) << ',' << name(timing.movement) << ','
+           << timing.technique << ',' << pass.name << ',' << pass.milliseconds << '\n';
+    }
+  }
+  return text.str();
+}
+
+std::string moments_csv(const Results& results) {
+  std::ostringstream text;
+  text << "scene,value,preset,frame,ssim\n";
+  for (const Moment& moment : results.moments) {
+    text << moment.scene << ',' << text_of(moment.value) << ',' << moment.technique << ','
+         << moment.frame << ',' << moment.ssim << '\n';
+  }
+  return text.str();
 }
 
 void write(const std::filesystem::path& path, const std::string& text) {
@@ -97,6 +153,11 @@ void write(const std::filesystem::path& path, const std::string& text) {
 }
 
 }  // namespace
+
+std::string image_name(const Measurement& m) {
+  return m.scene + "_" + std::to_string(int(100.0f * m.value)) + "_" +
+         std::string(name(m.movement)) + "_";
+}
 
 Timing summarise(const std::vector<render::Frame>& frames, int warm_up) {
   if (frames.size() <= std::size_t(warm_up)) {
@@ -162,29 +223,19 @@ std::string timing_tables(const std::vector<Timing>& timings) {
   return text;
 }
 
-void write_files(const std::filesystem::path& folder, const std::vector<Measurement>& measurements,
-                 const std::vector<Timing>& timings, const std::string& device) {
+void write_files(const std::filesystem::path& folder, const Results& results,
+                 const nlohmann::json& run) {
   std::filesystem::create_directories(folder);
-  std::ostringstream quality;
-  quality << "scene,swept,value,movement,preset,ssim,flicker,luminance_ratio\n";
-  nlohmann::json document = {{"device", device},
-                             {"quality", nlohmann::json::array()},
-                             {"timings", nlohmann::json::array()}};
-  for (const Measurement& m : measurements) {
-    quality << m.scene << ',' << name(m.swept) << ',' << m.value << ',' << name(m.movement) << ','
-            << m.technique << ',' << m.quality.ssim << ',' << m.quality.flicker << ','
-            << m.quality.luminance_ratio << '\n';
-    document["quality"].push_back(to_json(m));
+  nlohmann::json document = {
+      {"run", run}, {"quality", nlohmann::json::array()}, {"timings", nlohmann::json::array()}};
+  for (const Measurement& m : results.measurements) document["quality"].push_back(to_json(m));
+  for (const Timing& timing : results.timings) document["timings"].push_back(to_json(timing));
+  if (!results.measurements.empty()) write(folder / "quality.csv", quality_csv(results));
+  if (!results.timings.empty()) {
+    write(folder / "timings.csv", timings_csv(results));
+    write(folder / "passes.csv", passes_csv(results));
   }
-  std::ostringstream times;
-  times << "scene,movement,preset,min_fps,avg_fps,max_fps\n";
-  for (const Timing& timing : timings) {
-    times << timing.scene << ',' << name(timing.movement) << ',' << timing.technique << ','
-          << timing.slowest_fps << ',' << timing.mean_fps << ',' << timing.fastest_fps << '\n';
-    document["timings"].push_back(to_json(timing));
-  }
-  write(folder / "quality.csv", quality.str());
-  write(folder / "timings.csv", times.str());
+  if (!results.moments.empty()) write(folder / "over_time.csv", moments_csv(results));
   write(folder / "experiments.json", document.dump(1));
 }
 
