@@ -116,8 +116,9 @@ struct ResolutionInputs {
 };
 
 /// The fraction of width and height to draw at: less than 1 while the camera moves or a clip plays
-/// and full frames are slow, by themselves or because those of other sessions come in between. Of a few steps, and it changes only where times differ clearly, since
-/// every change scales all histories.
+/// and full frames are slow, by themselves or because those of other sessions come in between. Of a
+/// few steps, and it changes only where times differ clearly, since every change scales all
+/// histories.
 float draw_scale(const ResolutionInputs& in);
 
 /// The part of a full frame's time that a frame takes at this scale.
