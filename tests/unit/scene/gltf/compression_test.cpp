@@ -205,6 +205,7 @@ GltfBuilder with_meshopt() {
   const DracoInput input = sheet();
   const std::size_t count = input.positions.size();
   GltfBuilder builder;
+  builder.json["extensionsUsed"] = {"KHR_mesh_quantization"};
   const auto attribute = [&](const Bytes& bytes, std::uint32_t stride, int component,
                              std::string_view type, std::string_view filter, bool normalized) {
     const json extension = {
@@ -295,8 +296,10 @@ TEST(Meshopt, DamageIsRejected) {
   expect(refusal_with(0, [](auto&, auto& m) { m["filter"] = "QUATERNION"; }), "quaternion");
   expect(refusal_with(0, [](auto&, auto& m) { m["filter"] = "OCTAHEDRAL"; }), "octahedral");
   expect(refusal_with(0, [](auto&, auto& m) { m["count"] = 143; }), "byteLength");
-  expect(refusal_with(0, [](auto&, auto& m) { m["count"] = 0xffffffffffffffffull; }), "limit");
-  expect(refusal_with(0, [](auto&, auto& m) { m["buffer"] = 1; }), "past the end");
+  expect(refusal_with(0, [](auto&, auto& m) { m["count"] = 0xffffffffffffffffull; }),
+         "must be at most");
+  expect(refusal_with(0, [](auto&, auto& m) { m["count"] = 1ull << 40; }), "limit");
+  expect(refusal_with(0, [](auto&, auto& m) { m["buffer"] = 1; }), "without data");
   expect(refusal_with(0, [](auto&, auto& m) { m["byteLength"] = 1 << 30; }), "past the end");
   expect(refusal_with(0, [](auto&, auto& m) { m["byteLength"] = 8; }), "damaged data");
   expect(refusal_with(3, [](auto&, auto& m) { m["byteStride"] = 8; }), "2 or 4");
