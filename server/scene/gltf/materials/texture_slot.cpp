@@ -50,7 +50,7 @@ shared::TextureSlot read_texture_slot(int texture, int uv_set,
   slot.texture = textures.use(*index, srgb);
   if (slot.texture == shared::no_texture) {
     warnings.add(item_path("", "textures", *index) +
-                 " has no PNG, JPEG or WebP image and was left out");
+                 " has no image that can be read and was left out");
   }
   return slot;
 }

@@ -38,8 +38,12 @@ TextureTable::TextureTable(const tinygltf::Model& model) {
   for (const tinygltf::Texture& document : model.textures) {
     Declared& texture = textures_.emplace_back();
     texture.image = to_index(document.source);
-    if (const auto webp = find_extension(document.extensions, "EXT_texture_webp", "")) {
-      if (webp->has("source")) texture.image = webp->index("source");
+    // The texture's own source is for readers that know neither.
+    for (const char* const extension : {"KHR_texture_basisu", "EXT_texture_webp"}) {
+      const auto other = find_extension(document.extensions, extension, "");
+      if (!other || !other->has("source")) continue;
+      texture.image = other->index("source");
+      break;
     }
     if (const auto sampler = to_index(document.sampler)) {
       texture.sampler = to_sampler(model.samplers[*sampler]);

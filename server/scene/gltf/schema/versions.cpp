@@ -12,7 +12,7 @@
 namespace heliograph::scene {
 namespace {
 
-constexpr std::array<std::string_view, 18> supported_extensions = {
+constexpr std::array<std::string_view, 19> supported_extensions = {
     "EXT_meshopt_compression",
     "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
@@ -30,6 +30,7 @@ constexpr std::array<std::string_view, 18> supported_extensions = {
     "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_node_visibility",
+    "KHR_texture_basisu",
     "KHR_texture_transform",
 };
 

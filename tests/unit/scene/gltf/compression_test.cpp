@@ -383,19 +383,5 @@ TEST(WebP, DamageIsRejected) {
   }
 }
 
-TEST(Ktx2, ErrorNamesExtension) {
-  GltfBuilder builder = everything();
-  builder.json["extensionsRequired"] = {"KHR_texture_basisu"};
-  EXPECT_NE(refusal_of(builder).find("KHR_texture_basisu"), std::string::npos);
-  builder.json.erase("extensionsRequired");
-  builder.json["extensionsUsed"] = {"KHR_texture_basisu"};
-  builder.json["textures"][0]["extensions"]["KHR_texture_basisu"]["source"] = 0;
-  EXPECT_EQ(refusal_of(builder), "") << "the fallback image must be used";
-  Bytes ktx2 = {0xab, 'K', 'T', 'X', ' ', '2', '0', 0xbb, '\r', '\n', 0x1a, '\n'};
-  ktx2.resize(100);
-  builder.json["images"][0]["bufferView"] = builder.add_view(ktx2);
-  EXPECT_NE(refusal_of(builder).find("KHR_texture_basisu"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace heliograph::scene::test

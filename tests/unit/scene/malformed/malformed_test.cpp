@@ -279,7 +279,7 @@ const Damage damages[] = {
      "images[0]"},
     {"ImageOtherFormat",
      [](auto& b) { b.json["images"][0]["bufferView"] = b.add_view(Bytes(100, 'x')); },
-     "neither PNG, JPEG nor WebP"},
+     "neither PNG, JPEG, WebP nor KTX2"},
     {"ImageWithoutSource", [](auto& b) { b.json["images"][0].erase("bufferView"); },
      "neither a uri"},
 };
