@@ -95,6 +95,10 @@ void add_limit_options(CLI::App& command, scene::ImportLimits& limits) {
   add("--max-nodes", limits.nodes, "Maximum number of nodes of a scene");
   add("--max-instances", limits.instances, "Maximum number of mesh instances of a scene");
   add("--max-node-depth", limits.node_depth, "Maximum depth of the node hierarchy");
+  command
+      .add_flag("--strict-assets", limits.strict_assets,
+                "Refuse scenes with missing or damaged images instead of showing them without")
+      ->group("Limits of scenes");
 }
 
 }  // namespace heliograph::cli

@@ -100,36 +100,33 @@ class Importer {
       : limits_(limits), progress_(progress), choice_(choice), budget_(limits.scene_bytes) {
     const Stopwatch watch;
     report("reading", 0.0f);
-    file_.emplace(path, limits);
+    file_.emplace(path, limits, warnings_);
     scene_.name = path.stem().string();
     times_.parse = watch.seconds();
   }
 
   Scene import() {
     Stopwatch watch;
-    const JsonValue root = file_->root();
-    for (const std::string& name : file_->ignored_extensions())
-      warnings_.add("extension " + name + " is ignored");
-
-    const auto shown = choose_scene(root, choice_.scene);
-    scene_.scenes = read_scene_names(root);
+    const tinygltf::Model& model = file_->model();
+    const auto shown = choose_scene(model, choice_.scene);
+    scene_.scenes = read_scene_names(model);
     scene_.shown_scene = shown.value_or(0);
     const std::vector<Accessor> accessors = read_accessors(*file_, limits_);
-    check_skins(root, accessors);
-    check_animations(root, accessors);
-    TextureTable textures(root);
-    MaterialTable materials = read_materials(root, textures, warnings_);
+    check_skins(model, accessors);
+    check_animations(model, accessors);
+    TextureTable textures(model);
+    MaterialTable materials = read_materials(model, textures, warnings_);
     scene_.materials = std::move(materials.materials);
     scene_.material_names = std::move(materials.names);
     scene_.material_layers = std::move(materials.layers);
-    scene_.variants = read_variants(root, scene_.materials.size());
+    scene_.variants = read_variants(model);
     scene_.variant = choose_variant(scene_.variants, choice_.variant);
-    const PrimitiveTable primitives = read_primitives(*file_, accessors, scene_.materials.size(),
-                                                      scene_.variant, limits_, budget_, warnings_);
-    const std::vector<Light> lights = read_lights(root);
-    const std::vector<Camera> cameras = read_cameras(root);
-    NodeTable nodes = read_nodes(root, accessors, lights.size(), shown, limits_);
-    const std::vector<ImageSource> images = read_image_sources(*file_);
+    const PrimitiveTable primitives =
+        read_primitives(*file_, accessors, scene_.variant, limits_, budget_, warnings_);
+    const std::vector<Light> lights = read_lights(model);
+    const std::vector<Camera> cameras = read_cameras(model);
+    NodeTable nodes = read_nodes(model, accessors, shown, limits_, warnings_);
+    const std::vector<ImageSource> images = read_image_sources(*file_, limits_);
 
     times_.check = watch.lap();
     scene_.textures = textures.used_textures();
@@ -137,6 +134,7 @@ class Importer {
     const std::size_t parts = primitives.primitives.size() + textures.image_uses().size();
     PartsDone done([&](float fraction) { report("meshes and images", 0.1f + 0.85f * fraction); },
                    parts);
+    std::vector<std::string> problems;
     FirstFailure failure;
     const auto guarded = [&](double& seconds, const auto& task) {
       const Stopwatch own;
@@ -150,17 +148,20 @@ class Importer {
         },
         [&] {
           guarded(times_.images, [&] {
-            scene_.images =
+            auto decoded =
                 decode_images(images, textures.image_uses(), limits_, [&] { done.add_one(); });
+            scene_.images = std::move(decoded.images);
+            problems = std::move(decoded.problems);
           });
         });
     failure.rethrow();
     watch.lap();
+    drop_missing_images(scene_, problems, warnings_);
     build_layers(scene_);
     build_alpha_heap(scene_);
 
-    scene_.clips = read_clips(root, accessors, nodes, budget_, warnings_);
-    scene_.skins = read_skins(root, accessors, nodes, budget_);
+    scene_.clips = read_clips(model, accessors, nodes, budget_, warnings_);
+    scene_.skins = read_skins(model, accessors, nodes, budget_);
     scene_.nodes = nodes.nodes;
     place_instances(nodes, primitives);
     place_lights_and_cameras(nodes, lights, cameras);

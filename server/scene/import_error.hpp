@@ -14,6 +14,12 @@ class ImportError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// A file that another one refers to does not exist.
+class MissingFile : public ImportError {
+ public:
+  using ImportError::ImportError;
+};
+
 /// The file has no such scene or variant.
 class NoSuchChoice : public ImportError {
  public:

@@ -25,6 +25,9 @@ struct ImportLimits {
   std::uint32_t node_depth = 256;
   std::uint32_t json_depth = 64;
   std::uint64_t json_values = 16'000'000;
+  /// Whether an image that is missing or damaged refuses the file. Otherwise materials are shown
+  /// without it, with a warning.
+  bool strict_assets = false;
 };
 
 }  // namespace heliograph::scene

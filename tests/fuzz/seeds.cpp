@@ -13,6 +13,7 @@
 
 #include "tests/unit/scene/malformed/rich_document.hpp"
 #include "tests/unit/scene/support/encoders.hpp"
+#include "tests/unit/scene/support/ktx2_files.hpp"
 
 namespace heliograph::scene::test {
 namespace {
@@ -147,6 +148,9 @@ void write_images(const std::filesystem::path& folder) {
   write(folder / "progressive.jpg", jpeg(16, 16, rgb, true));
   write(folder / "lossless.webp", webp(16, 16, rgba));
   write(folder / "lossy.webp", webp(16, 16, rgba, false));
+  write(folder / "etc1s.ktx2", ktx2_of_etc1s());
+  write(folder / "uastc.ktx2", ktx2_of_blocks(16, 16, Bytes(256, 0x1b)));
+  write(folder / "zstandard.ktx2", ktx2_of_blocks(16, 16, Bytes(256, 0x1b), true));
   write(folder / "plain.hdr", radiance(false));
   write(folder / "encoded.hdr", radiance(true));
   std::vector<Imf::Rgba> pixels;

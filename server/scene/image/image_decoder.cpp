@@ -1,10 +1,9 @@
 #include "scene/image/image_decoder.hpp"
 
-#include <algorithm>
 #include <string>
-#include <string_view>
 
 #include "scene/image/jpeg_decoder.hpp"
+#include "scene/image/ktx2/ktx2_decoder.hpp"
 #include "scene/image/png_decoder.hpp"
 #include "scene/image/webp_decoder.hpp"
 #include "scene/import_error.hpp"
@@ -12,19 +11,12 @@
 namespace heliograph::scene {
 namespace {
 
-bool is_ktx2(std::span<const std::uint8_t> file) {
-  constexpr std::string_view magic = "\xabKTX 20\xbb";
-  return file.size() >= magic.size() &&
-         std::equal(magic.begin(), magic.end(), file.begin(),
-                    [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; });
-}
-
 ImageSize probe_known_format(std::span<const std::uint8_t> file) {
   if (is_png(file)) return probe_png(file);
   if (is_jpeg(file)) return probe_jpeg(file);
   if (is_webp(file)) return probe_webp(file);
-  if (is_ktx2(file)) throw ImportError("is KTX2 (KHR_texture_basisu), which is not supported");
-  throw ImportError("is neither PNG, JPEG nor WebP");
+  if (is_ktx2(file)) return probe_ktx2(file);
+  throw ImportError("is neither PNG, JPEG, WebP nor KTX2");
 }
 
 }  // namespace
@@ -45,6 +37,7 @@ void decode_image(std::span<const std::uint8_t> file, ImageSize size,
     throw ImportError("does not fit the output buffer");
   if (is_png(file)) return decode_png(file, size, rgba);
   if (is_webp(file)) return decode_webp(file, size, rgba);
+  if (is_ktx2(file)) return decode_ktx2(file, size, rgba);
   decode_jpeg(file, size, rgba);
 }
 

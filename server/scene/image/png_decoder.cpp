@@ -1,7 +1,10 @@
 #include "scene/image/png_decoder.hpp"
 
 #include <png.h>
+#include <zlib.h>
 
+#include <algorithm>
+#include <array>
 #include <csetjmp>
 #include <cstring>
 #include <string>
@@ -18,6 +21,7 @@ constexpr std::size_t header_size = signature_size + 8 + 13;
 struct Input {
   std::span<const std::uint8_t> left;
   char reason[96] = "damaged data";
+  bool too_much_data = false;
 };
 
 void read_bytes(png_structp png, png_bytep target, png_size_t count) {
@@ -33,7 +37,11 @@ void read_bytes(png_structp png, png_bytep target, png_size_t count) {
   png_longjmp(png, 1);
 }
 
-void ignore_warning(png_structp, png_const_charp) {}
+/// All warnings are harmless, but one may hide data of any size.
+void note_warning(png_structp png, png_const_charp message) {
+  Input& input = *static_cast<Input*>(png_get_error_ptr(png));
+  if (std::strstr(message, "Too much image data")) input.too_much_data = true;
+}
 
 // Converts every format to 8-bit RGBA.
 void request_rgba(png_structp png) {
@@ -64,7 +72,7 @@ bool read_rows(png_structp png, png_infop info, ImageSize size, png_bytepp rows)
 class Reader {
  public:
   explicit Reader(std::span<const std::uint8_t> file) : input_{file} {
-    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &input_, fail, ignore_warning);
+    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &input_, fail, note_warning);
     info_ = png_ ? png_create_info_struct(png_) : nullptr;
     if (!info_) {
       png_destroy_read_struct(&png_, nullptr, nullptr);
@@ -81,6 +89,9 @@ class Reader {
   Reader(const Reader&) = delete;
   Reader& operator=(const Reader&) = delete;
 
+  /// Whether there is more data than the rows need.
+  bool has_too_much_data() const { return input_.too_much_data; }
+
   void read(ImageSize size, png_bytepp rows) {
     if (!read_rows(png_, info_, size, rows)) {
       throw ImportError(std::string("is a damaged PNG: ") + input_.reason);
@@ -96,6 +107,32 @@ class Reader {
 std::uint32_t read_big_endian(const std::uint8_t* bytes) {
   return std::uint32_t(bytes[0]) << 24 | std::uint32_t(bytes[1]) << 16 |
          std::uint32_t(bytes[2]) << 8 | bytes[3];
+}
+
+/// Whether the image data inflate to more than `limit` bytes. Chunks have been checked.
+bool unpacks_to_more_than(std::span<const std::uint8_t> file, std::uint64_t limit) {
+  z_stream stream{};
+  if (inflateInit(&stream) != Z_OK) return false;
+  std::array<std::uint8_t, 65536> scratch;
+  std::uint64_t total = 0;
+  int state = Z_OK;
+  for (auto left = file.subspan(signature_size); left.size() >= 12 && state == Z_OK;) {
+    const std::size_t length =
+        std::min<std::size_t>(read_big_endian(left.data()), left.size() - 12);
+    stream.next_in = const_cast<Bytef*>(left.data() + 8);
+    stream.avail_in = static_cast<uInt>(length);
+    if (std::memcmp(left.data() + 4, "IDAT", 4) != 0) stream.avail_in = 0;
+    while (stream.avail_in > 0 && state == Z_OK && total <= limit) {
+      stream.next_out = scratch.data();
+      stream.avail_out = scratch.size();
+      state = inflate(&stream, Z_NO_FLUSH);
+      total += scratch.size() - stream.avail_out;
+    }
+    if (total > limit) break;
+    left = left.subspan(length + 12);
+  }
+  inflateEnd(&stream);
+  return total > limit;
 }
 
 }  // namespace
@@ -115,7 +152,13 @@ ImageSize probe_png(std::span<const std::uint8_t> file) {
 void decode_png(std::span<const std::uint8_t> file, ImageSize size, std::span<std::uint8_t> rgba) {
   std::vector<png_bytep> rows(size.height);
   for (std::size_t y = 0; y < rows.size(); ++y) rows[y] = rgba.data() + y * size.width * 4;
-  Reader(file).read(size, rows.data());
+  Reader reader(file);
+  reader.read(size, rows.data());
+  // Some encoders write a few bytes too many.
+  const std::uint64_t needed = (std::uint64_t(size.width) * 8 + 1) * size.height;
+  if (reader.has_too_much_data() && unpacks_to_more_than(file, 2 * needed + 65536)) {
+    throw ImportError("is a damaged PNG: its data unpack to far more than its size");
+  }
 }
 
 }  // namespace heliograph::scene

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
+
+#include "scene/gltf/document/extension_value.hpp"
 
 namespace heliograph::scene {
 namespace {
@@ -22,38 +25,33 @@ std::uint32_t component_size(ComponentType type) {
   return 4;
 }
 
-ComponentType read_component_type(const JsonValue& owner) {
-  const std::uint64_t value = owner.required_integer("componentType");
-  switch (value) {
-    case 5120:
-    case 5121:
-    case 5122:
-    case 5123:
-    case 5125:
-    case 5126:
-      return static_cast<ComponentType>(value);
+ElementType to_element(int type) {
+  switch (type) {
+    case TINYGLTF_TYPE_VEC2:
+      return ElementType::vec2;
+    case TINYGLTF_TYPE_VEC3:
+      return ElementType::vec3;
+    case TINYGLTF_TYPE_VEC4:
+      return ElementType::vec4;
+    case TINYGLTF_TYPE_MAT2:
+      return ElementType::mat2;
+    case TINYGLTF_TYPE_MAT3:
+      return ElementType::mat3;
+    case TINYGLTF_TYPE_MAT4:
+      return ElementType::mat4;
     default:
-      owner.refuse("componentType", std::to_string(value) + " is not a component type");
+      return ElementType::scalar;
   }
 }
 
-ElementType read_element_type(const JsonValue& owner) {
-  static constexpr std::array<std::string_view, 7> names = {"SCALAR", "VEC2", "VEC3", "VEC4",
-                                                            "MAT2",   "MAT3", "MAT4"};
-  const std::string name = owner.text("type");
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) owner.refuse("type", "is not an element type");
-  return static_cast<ElementType>(found - names.begin());
-}
-
 // `count` elements of `size` bytes, `stride` apart, from `offset`: within the view?
-std::span<const std::uint8_t> checked_range(const JsonValue& owner, const BufferView& view,
+std::span<const std::uint8_t> checked_range(const std::string& place, const BufferView& view,
                                             std::uint64_t offset, std::uint64_t count,
                                             std::uint32_t stride, std::uint32_t size) {
   // `count` fits 32 bits and the stride 8, so that this cannot wrap.
   const std::uint64_t needed = count == 0 ? 0 : (count - 1) * stride + size;
   if (offset > view.bytes.size() || needed > view.bytes.size() - offset) {
-    owner.refuse("reaches past the end of its buffer view");
+    refuse_at(place, "reaches past the end of its buffer view");
   }
   return view.bytes.subspan(offset, needed);
 }
@@ -131,66 +129,60 @@ void read_elements(const Accessor& accessor, int components, std::size_t count,
   }
 }
 
-Accessor::Sparse read_sparse(const JsonValue& sparse, const GltfFile& file,
+Accessor::Sparse read_sparse(const tinygltf::Accessor& document, const GltfFile& file,
                              const Accessor& accessor) {
-  const std::uint64_t count = sparse.required_integer("count");
-  if (count == 0 || count > accessor.count) {
-    sparse.refuse("count", "must be from 1 to the accessor's count");
-  }
-  const auto indices = sparse.object("indices");
-  const auto values = sparse.object("values");
-  if (!indices || !values) sparse.refuse("must have indices and values");
+  const auto& sparse = document.sparse;
+  const std::string place = accessor.path + ".sparse";
+  const auto count = static_cast<std::uint64_t>(sparse.count);
+  if (count > accessor.count) refuse_at(place, "count", "must be from 1 to the accessor's count");
 
-  const std::uint32_t index_view =
-      indices->required_index("bufferView", file.views().size(), "buffer views");
-  const ComponentType index_type = read_component_type(*indices);
-  if (!is_index_type(index_type))
-    indices->refuse("componentType", "must be an unsigned integer type");
+  const auto index_type = static_cast<ComponentType>(sparse.indices.componentType);
   const std::uint32_t index_size = component_size(index_type);
-  const auto index_bytes =
-      checked_range(*indices, file.views()[index_view], indices->integer("byteOffset", 0), count,
-                    index_size, index_size);
+  const std::string indices = place + ".indices";
+  const auto index_bytes = checked_range(
+      indices, file.views()[static_cast<std::size_t>(sparse.indices.bufferView)],
+      static_cast<std::uint64_t>(sparse.indices.byteOffset), count, index_size, index_size);
 
   Accessor::Sparse result;
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint32_t index = load_unsigned(index_bytes.data() + i * index_size, index_type);
-    if (index >= accessor.count)
-      indices->refuse("index " + std::to_string(index) + " is out of range");
-    if (i > 0 && index <= result.indices.back()) indices->refuse("must ascend");
+    if (index >= accessor.count) {
+      refuse_at(indices, "index " + std::to_string(index) + " is out of range");
+    }
+    if (i > 0 && index <= result.indices.back()) refuse_at(indices, "must ascend");
     result.indices.push_back(index);
   }
 
   const std::uint32_t size = element_bytes(accessor.element, accessor.component);
-  const std::uint32_t value_view =
-      values->required_index("bufferView", file.views().size(), "buffer views");
-  result.values = checked_range(*values, file.views()[value_view], values->integer("byteOffset", 0),
-                                count, size, size);
+  result.values = checked_range(
+      place + ".values", file.views()[static_cast<std::size_t>(sparse.values.bufferView)],
+      static_cast<std::uint64_t>(sparse.values.byteOffset), count, size, size);
   return result;
 }
 
-Accessor read_accessor(const JsonValue& json, const GltfFile& file, const ImportLimits& limits) {
+Accessor read_accessor(const tinygltf::Accessor& document, std::string path, const GltfFile& file,
+                       const ImportLimits& limits) {
   Accessor result;
-  result.path = json.path();
-  result.component = read_component_type(json);
-  result.element = read_element_type(json);
-  result.normalized = json.boolean("normalized", false);
-  const std::uint64_t count = json.required_integer("count");
-  if (count == 0) json.refuse("count", "must be at least 1");
-  if (count > 3 * limits.triangles) {
-    json.refuse("count", std::to_string(count) + " exceeds the limit of " +
-                             std::to_string(3 * limits.triangles) + " elements");
+  result.path = std::move(path);
+  result.component = static_cast<ComponentType>(document.componentType);
+  result.element = to_element(document.type);
+  result.normalized = document.normalized;
+  if (document.count > 3 * limits.triangles) {
+    refuse_at(result.path, "count",
+              std::to_string(document.count) + " exceeds the limit of " +
+                  std::to_string(3 * limits.triangles) + " elements");
   }
-  result.count = static_cast<std::uint32_t>(count);
+  result.count = static_cast<std::uint32_t>(document.count);
   const std::uint32_t size = element_bytes(result.element, result.component);
   result.stride = size;
-  if (const auto view = json.index("bufferView", file.views().size(), "buffer views")) {
+  if (const auto view = to_index(document.bufferView)) {
     const BufferView& source = file.views()[*view];
     if (source.stride != 0) result.stride = source.stride;
-    if (result.stride < size) json.refuse("is wider than its buffer view's byteStride");
+    if (result.stride < size) result.refuse("is wider than its buffer view's byteStride");
     result.bytes =
-        checked_range(json, source, json.integer("byteOffset", 0), count, result.stride, size);
+        checked_range(result.path, source, document.byteOffset, result.count, result.stride, size);
   }
-  if (const auto sparse = json.object("sparse")) result.sparse = read_sparse(*sparse, file, result);
+  if (document.sparse.isSparse) result.sparse = read_sparse(document, file, result);
   return result;
 }
 
@@ -215,7 +207,7 @@ std::uint32_t element_bytes(ElementType element, ComponentType component) {
 }
 
 void Accessor::refuse(std::string_view reason) const {
-  throw ImportError(path + ": " + std::string(reason));
+  refuse_at(path, reason);
 }
 
 std::uint32_t component_count(ElementType type) {
@@ -240,13 +232,14 @@ std::uint32_t component_count(ElementType type) {
 std::vector<Accessor> read_accessors(const GltfFile& file, const ImportLimits& limits) {
   std::vector<Accessor> result;
   std::uint64_t replacements = 0;
-  for (const JsonValue& json : file.root().objects("accessors")) {
-    result.push_back(read_accessor(json, file, limits));
+  for (const tinygltf::Accessor& document : file.model().accessors) {
+    result.push_back(
+        read_accessor(document, item_path("", "accessors", result.size()), file, limits));
     // Accessors may share the bytes of their sparse values, so that the file's size is no limit.
     if (result.back().sparse) replacements += result.back().sparse->indices.size();
     if (replacements > 3 * limits.triangles) {
-      json.refuse("exceeds the limit of " + std::to_string(3 * limits.triangles) +
-                  " sparse elements for the whole scene");
+      result.back().refuse("exceeds the limit of " + std::to_string(3 * limits.triangles) +
+                           " sparse elements for the whole scene");
     }
   }
   return result;

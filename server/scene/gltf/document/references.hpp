@@ -9,7 +9,7 @@ namespace heliograph::scene {
 
 /// Checks skins and animations, which are read later, so that a damaged file is rejected early.
 /// @throws ImportError
-void check_skins(const JsonValue& root, std::span<const Accessor> accessors);
-void check_animations(const JsonValue& root, std::span<const Accessor> accessors);
+void check_skins(const tinygltf::Model& model, std::span<const Accessor> accessors);
+void check_animations(const tinygltf::Model& model, std::span<const Accessor> accessors);
 
 }  // namespace heliograph::scene

@@ -32,15 +32,15 @@ NoSuchChoice::NoSuchChoice(std::string member, const std::string& requested,
       member_(std::move(member)),
       names_(std::move(names)) {}
 
-std::vector<std::string> read_scene_names(const JsonValue& root) {
+std::vector<std::string> read_scene_names(const tinygltf::Model& model) {
   std::vector<std::string> names;
-  for (const JsonValue& scene : root.objects("scenes")) names.push_back(scene.text("name"));
+  for (const tinygltf::Scene& scene : model.scenes) names.push_back(scene.name);
   return names;
 }
 
-std::optional<std::uint32_t> choose_scene(const JsonValue& root, const std::string& requested) {
-  const std::vector<std::string> names = read_scene_names(root);
-  const auto shown = root.index("scene", names.size(), "scenes");
+std::optional<std::uint32_t> choose_scene(const tinygltf::Model& model,
+                                          const std::string& requested) {
+  const std::vector<std::string> names = read_scene_names(model);
   if (!requested.empty()) {
     auto chosen = index_of(names, requested);
     if (!chosen) chosen = number_below(names.size(), requested);
@@ -48,7 +48,7 @@ std::optional<std::uint32_t> choose_scene(const JsonValue& root, const std::stri
     return chosen;
   }
   if (names.empty()) return std::nullopt;
-  return shown.value_or(0);
+  return static_cast<std::uint32_t>(std::max(model.defaultScene, 0));
 }
 
 std::optional<std::uint32_t> choose_variant(const std::vector<std::string>& variants,

@@ -1,20 +1,21 @@
 #pragma once
 
+#include <tiny_gltf.h>
+
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "scene/gltf/document/json_value.hpp"
-
 namespace heliograph::scene {
 
 /// The names of the document's scenes, empty where one has none.
-std::vector<std::string> read_scene_names(const JsonValue& root);
+std::vector<std::string> read_scene_names(const tinygltf::Model& model);
 
 /// The scene with name or index `requested`; the document's default when `requested` is empty.
 /// Nullopt when the document has no scenes. @throws NoSuchChoice, ImportError
-std::optional<std::uint32_t> choose_scene(const JsonValue& root, const std::string& requested);
+std::optional<std::uint32_t> choose_scene(const tinygltf::Model& model,
+                                          const std::string& requested);
 
 /// The index of `requested` among the names of variants; nullopt when `requested` is empty.
 /// @throws NoSuchChoice

@@ -3,21 +3,19 @@
 #include <algorithm>
 #include <set>
 
+#include "scene/gltf/document/extension_value.hpp"
+
 namespace heliograph::scene {
 namespace {
 
-constexpr std::string_view extension = "KHR_materials_variants";
+constexpr const char* extension = "KHR_materials_variants";
 
-void check_mappings(const JsonValue& primitive, std::size_t variant_count,
-                    std::size_t material_count) {
-  const auto own = primitive.object("extensions", extension);
+void check_mappings(const tinygltf::Primitive& primitive, const std::string& path) {
+  const auto own = find_extension(primitive.extensions, extension, path);
   if (!own) return;
   std::set<std::uint32_t> mapped;
-  for (const JsonValue& mapping : own->objects("mappings")) {
-    mapping.required_index("material", material_count, "materials");
-    const auto variants = mapping.indices("variants", variant_count, "variants");
-    if (variants.empty()) mapping.refuse("variants", "must refer to at least one variant");
-    for (const std::uint32_t variant : variants) {
+  for (const ExtensionValue& mapping : own->objects("mappings")) {
+    for (const std::uint32_t variant : mapping.indices("variants")) {
       if (!mapped.insert(variant).second) mapping.refuse("variants", "lists a variant twice");
     }
   }
@@ -25,28 +23,29 @@ void check_mappings(const JsonValue& primitive, std::size_t variant_count,
 
 }  // namespace
 
-std::vector<std::string> read_variants(const JsonValue& root, std::size_t material_count) {
+std::vector<std::string> read_variants(const tinygltf::Model& model) {
   std::vector<std::string> names;
-  if (const auto own = root.object("extensions", extension)) {
-    for (const JsonValue& variant : own->objects("variants")) names.push_back(variant.text("name"));
+  if (const auto own = find_extension(model.extensions, extension, "")) {
+    for (const ExtensionValue& variant : own->objects("variants")) {
+      names.push_back(variant.text("name"));
+    }
   }
-  for (const JsonValue& mesh : root.objects("meshes")) {
-    for (const JsonValue& primitive : mesh.objects("primitives")) {
-      check_mappings(primitive, names.size(), material_count);
+  for (std::size_t i = 0; i < model.meshes.size(); ++i) {
+    const auto& primitives = model.meshes[i].primitives;
+    for (std::size_t k = 0; k < primitives.size(); ++k) {
+      check_mappings(primitives[k], item_path(item_path("", "meshes", i), "primitives", k));
     }
   }
   return names;
 }
 
-std::optional<std::uint32_t> material_of_variant(const JsonValue& primitive,
+std::optional<std::uint32_t> material_of_variant(const tinygltf::Primitive& primitive,
                                                  std::uint32_t variant) {
-  constexpr auto any = std::size_t(-1);
-  const auto own = primitive.object("extensions", extension);
+  const auto own = find_extension(primitive.extensions, extension, "");
   if (!own) return std::nullopt;
-  for (const JsonValue& mapping : own->objects("mappings")) {
-    const auto variants = mapping.indices("variants", any, "variants");
-    if (std::ranges::find(variants, variant) == variants.end()) continue;
-    return mapping.required_index("material", any, "materials");
+  for (const ExtensionValue& mapping : own->objects("mappings")) {
+    const auto variants = mapping.indices("variants");
+    if (std::ranges::find(variants, variant) != variants.end()) return mapping.index("material");
   }
   return std::nullopt;
 }

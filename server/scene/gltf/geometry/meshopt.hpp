@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "scene/gltf/document/json_value.hpp"
+#include "scene/gltf/document/extension_value.hpp"
 
 namespace heliograph::scene {
 
@@ -12,7 +12,7 @@ namespace heliograph::scene {
 /// extension's object, `source` its bytes, `length` the view's byteLength and the size of the
 /// result. `budget` is the number of bytes that this file may still decode, and is reduced.
 /// @throws ImportError
-std::vector<std::uint8_t> unpack_meshopt(const JsonValue& packed,
+std::vector<std::uint8_t> unpack_meshopt(const ExtensionValue& packed,
                                          std::span<const std::uint8_t> source, std::uint64_t length,
                                          std::uint64_t& budget);
 

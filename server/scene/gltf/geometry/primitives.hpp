@@ -76,7 +76,7 @@ struct PrimitiveTable {
 /// `budget` with the memory of the geometry.
 /// @throws ImportError
 PrimitiveTable read_primitives(const GltfFile& file, std::span<const Accessor> accessors,
-                               std::size_t material_count, std::optional<std::uint32_t> variant,
-                               const ImportLimits& limits, ByteBudget& budget, Warnings& warnings);
+                               std::optional<std::uint32_t> variant, const ImportLimits& limits,
+                               ByteBudget& budget, Warnings& warnings);
 
 }  // namespace heliograph::scene

@@ -2,7 +2,10 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
+
 #include "scene/first_failure.hpp"
+#include "scene/gltf/document/extension_value.hpp"
 #include "scene/image/image_decoder.hpp"
 #include "scene/image/mipmaps.hpp"
 #include "scene/quote.hpp"
@@ -15,18 +18,36 @@ namespace {
                     reason);
 }
 
+/// Runs `task` for an image; returns why it failed, where assets are not strict.
+template <typename Task>
+std::string try_image(const ImageSource& source, const ImportLimits& limits, const Task& task) {
+  try {
+    task();
+  } catch (const ImportError& error) {
+    if (limits.strict_assets) refuse(source, error.what());
+    return source.path + (source.name.empty() ? "" : " " + in_quotes(source.name)) + " " +
+           error.what();
+  }
+  return "";
+}
+
+/// Sizes of all images, 0 where there is a problem.
 std::vector<ImageSize> probe_images(std::span<const ImageSource> sources,
-                                    std::span<const ImageUse> uses, const ImportLimits& limits) {
-  std::vector<ImageSize> sizes;
+                                    std::span<const ImageUse> uses, const ImportLimits& limits,
+                                    std::vector<std::string>& problems) {
+  std::vector<ImageSize> sizes(uses.size());
   std::uint64_t texels = 0;
-  for (const ImageUse& use : uses) {
-    const ImageSource& source = sources[use.source];
-    try {
-      sizes.push_back(probe_image(source.bytes));
-    } catch (const ImportError& error) {
-      refuse(source, error.what());
+  for (std::size_t i = 0; i < uses.size(); ++i) {
+    const ImageSource& source = sources[uses[i].source];
+    for (const std::uint32_t index : uses[i].sources()) {
+      if (problems[i].empty()) problems[i] = sources[index].problem;
+      if (!problems[i].empty()) continue;
+      problems[i] = try_image(sources[index], limits, [&] {
+        const ImageSize own = probe_image(sources[index].bytes);
+        sizes[i] = {std::max(sizes[i].width, own.width), std::max(sizes[i].height, own.height)};
+      });
     }
-    const auto [width, height] = sizes.back();
+    const auto [width, height] = sizes[i];
     if (width > limits.texture_size || height > limits.texture_size) {
       refuse(source, "is " + std::to_string(width) + " x " + std::to_string(height) +
                          " pixels: the limit is " + std::to_string(limits.texture_size));
@@ -48,6 +69,7 @@ std::vector<SharedFile> share_files(std::span<const ImageSource> sources,
                                     std::span<const ImageUse> uses) {
   std::vector<SharedFile> files(sources.size());
   for (const ImageUse& use : uses) {
+    if (use.conversion) continue;
     const ImageSource& source = sources[use.source];
     SharedFile& file = files[use.source];
     if (!file) file = source.file;
@@ -66,59 +88,110 @@ void decode_levels(Image& image) {
   fill_mip_chain(image);
 }
 
-Image decode(const ImageSource& source, const SharedFile& file, ImageSize size, bool srgb) {
+/// An image and its decoded texels, where there is one.
+struct DecodedSource {
+  ImageSize size;
+  std::vector<std::uint8_t> rgba;
+
+  DecodedSource(std::span<const ImageSource> sources, std::optional<std::uint32_t> index) {
+    if (!index) return;
+    size = probe_image(sources[*index].bytes);
+    rgba.resize(std::size_t(size.width) * size.height * 4);
+    decode_image(sources[*index].bytes, size, rgba);
+  }
+  SourceTexels texels() const { return {size, rgba}; }
+};
+
+/// Not kept with a file: its texels stay in memory.
+void convert_levels(std::span<const ImageSource> sources, const ImageConversion& conversion,
+                    Image& image) {
+  const DecodedSource diffuse(sources, conversion.diffuse);
+  const DecodedSource specular(sources, conversion.specular);
+  image.pixels.resize(mip_chain_bytes(image.width, image.height));
+  convert_texels(conversion.kind, conversion.factors, diffuse.texels(), specular.texels(),
+                 {image.width, image.height}, image.pixels);
+  fill_mip_chain(image);
+}
+
+Image decode(std::span<const ImageSource> sources, const ImageUse& use,
+             std::span<const SharedFile> files, ImageSize size) {
   Image image;
-  image.name = source.name;
+  image.name = sources[use.source].name;
   image.width = size.width;
   image.height = size.height;
   image.levels = mip_level_count(size.width, size.height);
-  image.srgb = srgb;
-  image.file = file;
-  try {
+  image.srgb = use.srgb;
+  if (use.conversion) {
+    convert_levels(sources, *use.conversion, image);
+  } else {
+    image.file = files[use.source];
     decode_levels(image);
-  } catch (const ImportError& error) {
-    refuse(source, error.what());
   }
+  return image;
+}
+
+Image white_texel(const ImageSource& source, bool srgb) {
+  Image image;
+  image.name = source.name;
+  image.width = image.height = 1;
+  image.srgb = srgb;
+  image.pixels.assign(4, 255);
   return image;
 }
 
 }  // namespace
 
-std::vector<ImageSource> read_image_sources(GltfFile& file) {
+std::vector<std::uint32_t> ImageUse::sources() const {
+  if (!conversion) return {source};
+  std::vector<std::uint32_t> result;
+  if (conversion->diffuse) result.push_back(*conversion->diffuse);
+  if (conversion->specular) result.push_back(*conversion->specular);
+  return result;
+}
+
+std::vector<ImageSource> read_image_sources(GltfFile& file, const ImportLimits& limits) {
   std::vector<ImageSource> result;
-  for (const JsonValue& json : file.root().objects("images")) {
+  for (const tinygltf::Image& image : file.model().images) {
     ImageSource& source = result.emplace_back();
-    source.path = json.path();
-    source.name = json.text("name");
-    if (const auto view = json.index("bufferView", file.views().size(), "buffer views")) {
-      if (json.has("uri")) json.refuse("has both a uri and a buffer view");
+    source.path = item_path("", "images", result.size() - 1);
+    source.name = image.name;
+    if (const auto view = to_index(image.bufferView)) {
       source.bytes = file.views()[*view].bytes;
-    } else if (json.has("uri")) {
-      source.file = std::make_shared<const std::vector<std::uint8_t>>(file.resource(json));
+      continue;
+    }
+    try {
+      source.file = std::make_shared<const std::vector<std::uint8_t>>(file.resource(source.path));
       source.bytes = *source.file;
-    } else {
-      json.refuse("has neither a uri nor a buffer view");
+    } catch (const MissingFile& error) {
+      if (limits.strict_assets) throw;
+      source.problem = error.what();
     }
   }
   return result;
 }
 
-std::vector<Image> decode_images(std::span<const ImageSource> sources,
-                                 std::span<const ImageUse> uses, const ImportLimits& limits,
-                                 const std::function<void()>& decoded) {
-  const std::vector<ImageSize> sizes = probe_images(sources, uses, limits);
+DecodedImages decode_images(std::span<const ImageSource> sources, std::span<const ImageUse> uses,
+                            const ImportLimits& limits, const std::function<void()>& decoded) {
+  DecodedImages result;
+  result.images.resize(uses.size());
+  result.problems.resize(uses.size());
+  const std::vector<ImageSize> sizes = probe_images(sources, uses, limits, result.problems);
   const std::vector<SharedFile> files = share_files(sources, uses);
-  std::vector<Image> images(uses.size());
   FirstFailure failure;
   tbb::parallel_for(std::size_t(0), uses.size(), [&](std::size_t i) {
     failure.guard([&] {
       const std::uint32_t source = uses[i].source;
-      images[i] = decode(sources[source], files[source], sizes[i], uses[i].srgb);
+      std::string& problem = result.problems[i];
+      if (problem.empty()) {
+        problem = try_image(sources[source], limits,
+                            [&] { result.images[i] = decode(sources, uses[i], files, sizes[i]); });
+      }
+      if (!problem.empty()) result.images[i] = white_texel(sources[source], uses[i].srgb);
       decoded();
     });
   });
   failure.rethrow();
-  return images;
+  return result;
 }
 
 ImagePixels::ImagePixels(const Image& image) : pixels_(image.pixels) {

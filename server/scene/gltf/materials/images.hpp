@@ -3,11 +3,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "scene/gltf/document/gltf_file.hpp"
+#include "scene/gltf/materials/specular_glossiness.hpp"
 #include "scene/scene.hpp"
 
 namespace heliograph::scene {
@@ -18,22 +20,42 @@ struct ImageSource {
   std::string name;
   std::shared_ptr<const std::vector<std::uint8_t>> file;  // when not part of a buffer
   std::span<const std::uint8_t> bytes;
+  std::string problem;  // why there are no bytes
+};
+
+/// An image that is computed from two others of the specular-glossiness model.
+struct ImageConversion {
+  ConvertedImage kind = ConvertedImage::base_color;
+  SpecularGlossiness factors;
+  std::optional<std::uint32_t> diffuse;
+  std::optional<std::uint32_t> specular;
+  bool operator==(const ImageConversion&) const = default;
 };
 
 /// One use of an image: an image used both as color and as data is decoded twice.
 struct ImageUse {
   std::uint32_t source = 0;
   bool srgb = false;
+  std::optional<ImageConversion> conversion = std::nullopt;  // `source` is one of its images
+
+  /// All images that it reads.
+  std::vector<std::uint32_t> sources() const;
 };
 
 /// @throws ImportError
-std::vector<ImageSource> read_image_sources(GltfFile& file);
+std::vector<ImageSource> read_image_sources(GltfFile& file, const ImportLimits& limits);
+
+/// The images of all uses. Those that are missing or damaged are one white texel, unless assets are
+/// strict.
+struct DecodedImages {
+  std::vector<Image> images;
+  std::vector<std::string> problems;  // per image; empty: none
+};
 
 /// Decodes every use, with mip levels, in parallel. `decoded` is called after each, on any thread.
-/// @throws ImportError when an image is damaged or a limit is exceeded
-std::vector<Image> decode_images(std::span<const ImageSource> sources,
-                                 std::span<const ImageUse> uses, const ImportLimits& limits,
-                                 const std::function<void()>& decoded);
+/// @throws ImportError when a limit is exceeded, and with strict assets when an image is damaged
+DecodedImages decode_images(std::span<const ImageSource> sources, std::span<const ImageUse> uses,
+                            const ImportLimits& limits, const std::function<void()>& decoded);
 
 /// All levels of an image, decoded again if its pixels were released.
 class ImagePixels {

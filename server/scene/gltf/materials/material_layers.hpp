@@ -1,6 +1,9 @@
 #pragma once
 
-#include "scene/gltf/document/json_value.hpp"
+#include <tiny_gltf.h>
+
+#include <string>
+
 #include "scene/gltf/materials/textures.hpp"
 #include "scene/scene.hpp"
 #include "scene/warnings.hpp"
@@ -8,9 +11,10 @@
 namespace heliograph::scene {
 
 /// Reads a material's extensions: specular, clearcoat, sheen, transmission and volume. Registers
-/// their textures in `textures` and adds a warning for every approximation.
-/// @throws ImportError
-MaterialLayers read_material_layers(const JsonValue& extensions, TextureTable& textures,
+/// their textures in `textures` and adds a warning for every approximation. `path` names the
+/// material.
+MaterialLayers read_material_layers(const tinygltf::ExtensionMap& extensions,
+                                    const std::string& path, TextureTable& textures,
                                     Warnings& warnings);
 
 }  // namespace heliograph::scene

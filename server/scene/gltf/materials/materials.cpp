@@ -1,9 +1,9 @@
 #include "scene/gltf/materials/materials.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 
+#include "scene/gltf/document/extension_value.hpp"
 #include "scene/gltf/materials/material_layers.hpp"
 #include "scene/gltf/materials/texture_slot.hpp"
 
@@ -15,98 +15,93 @@ class MaterialReader {
   MaterialReader(TextureTable& textures, Warnings& warnings)
       : textures_(textures), warnings_(warnings) {}
 
-  shared::Material read(const JsonValue& json) {
+  shared::Material read(const tinygltf::Material& document, const std::string& path) {
     shared::Material material = default_material();
-    if (const auto pbr = json.object("pbrMetallicRoughness"))
-      read_metallic_roughness(*pbr, material);
-    if (const auto normal = json.object("normalTexture")) {
-      material.normal_texture = read_slot(*normal, false);
-      material.normal_scale = normal->number("scale", 1.0f);
+    read_metallic_roughness(document.pbrMetallicRoughness, path + ".pbrMetallicRoughness",
+                            material);
+    material.normal_texture = read_slot(document.normalTexture, path + ".normalTexture", false);
+    material.normal_scale = static_cast<float>(document.normalTexture.scale);
+    material.occlusion_texture =
+        read_slot(document.occlusionTexture, path + ".occlusionTexture", false);
+    material.occlusion_strength = static_cast<float>(document.occlusionTexture.strength);
+    material.emissive_texture =
+        read_slot(document.emissiveTexture, path + ".emissiveTexture", true);
+    for (int i = 0; i < 3; ++i) {
+      material.emissive[i] = static_cast<float>(document.emissiveFactor[i]);
     }
-    if (const auto occlusion = json.object("occlusionTexture")) {
-      material.occlusion_texture = read_slot(*occlusion, false);
-      material.occlusion_strength = unit_number(*occlusion, "strength");
-    }
-    if (const auto emissive = json.object("emissiveTexture")) {
-      material.emissive_texture = read_slot(*emissive, true);
-    }
-    read_emissive_factor(json, material);
-    read_alpha(json, material);
-    if (json.boolean("doubleSided", false)) material.flags |= shared::material_double_sided;
-    read_extensions(json, material);
+    if (document.alphaMode == "MASK") material.flags |= shared::material_alpha_mask;
+    if (document.alphaMode == "BLEND") material.flags |= shared::material_alpha_blend;
+    material.alpha_cutoff = static_cast<float>(document.alphaCutoff);
+    if (document.doubleSided) material.flags |= shared::material_double_sided;
+    read_extensions(document.extensions, path, material);
     return material;
   }
 
  private:
-  // Factors that the specification keeps within 0..1.
-  float to_unit(const JsonValue& owner, std::string_view key, float value) {
-    const float clamped = std::clamp(value, 0.0f, 1.0f);
-    if (clamped != value) {
-      warnings_.add(owner.path() + "." + std::string(key) + " is outside 0..1 and was clamped");
+  void read_metallic_roughness(const tinygltf::PbrMetallicRoughness& pbr, const std::string& path,
+                               shared::Material& material) {
+    for (int i = 0; i < 4; ++i) {
+      material.base_color[i] = static_cast<float>(pbr.baseColorFactor[i]);
     }
-    return clamped;
+    material.metallic = static_cast<float>(pbr.metallicFactor);
+    material.roughness = static_cast<float>(pbr.roughnessFactor);
+    material.base_color_texture = read_slot(pbr.baseColorTexture, path + ".baseColorTexture", true);
+    material.metallic_roughness_texture =
+        read_slot(pbr.metallicRoughnessTexture, path + ".metallicRoughnessTexture", false);
   }
 
-  float unit_number(const JsonValue& owner, std::string_view key) {
-    return to_unit(owner, key, owner.number(key, 1.0f));
-  }
-
-  void read_metallic_roughness(const JsonValue& pbr, shared::Material& material) {
-    const auto color = pbr.numbers<4>("baseColorFactor", {1.0f, 1.0f, 1.0f, 1.0f});
-    for (int i = 0; i < 4; ++i) material.base_color[i] = to_unit(pbr, "baseColorFactor", color[i]);
-    material.metallic = unit_number(pbr, "metallicFactor");
-    material.roughness = unit_number(pbr, "roughnessFactor");
-    if (const auto slot = pbr.object("baseColorTexture")) {
-      material.base_color_texture = read_slot(*slot, true);
-    }
-    if (const auto slot = pbr.object("metallicRoughnessTexture")) {
-      material.metallic_roughness_texture = read_slot(*slot, false);
-    }
-  }
-
-  // Old exporters write emissive factors above one: accepted, but not negative ones.
-  void read_emissive_factor(const JsonValue& json, shared::Material& material) {
-    const auto factor = json.numbers<3>("emissiveFactor", {0.0f, 0.0f, 0.0f});
-    for (int i = 0; i < 3; ++i) {
-      if (factor[i] < 0.0f) json.refuse("emissiveFactor", "must not be negative");
-      material.emissive[i] = factor[i];
-    }
-  }
-
-  void read_alpha(const JsonValue& json, shared::Material& material) {
-    const std::string mode = json.text("alphaMode");
-    if (mode == "MASK") {
-      material.flags |= shared::material_alpha_mask;
-    } else if (mode == "BLEND") {
-      material.flags |= shared::material_alpha_blend;
-    } else if (!mode.empty() && mode != "OPAQUE") {
-      json.refuse("alphaMode", "is not OPAQUE, MASK or BLEND");
-    }
-    material.alpha_cutoff = json.number("alphaCutoff", 0.5f);
-    if (material.alpha_cutoff < 0.0f) json.refuse("alphaCutoff", "must not be negative");
-  }
-
-  void read_extensions(const JsonValue& json, shared::Material& material) {
-    const auto extensions = json.object("extensions");
-    if (!extensions) return;
-    if (const auto strength = extensions->object("KHR_materials_emissive_strength")) {
-      const float factor = strength->number("emissiveStrength", 1.0f);
-      if (factor < 0.0f) strength->refuse("emissiveStrength", "must not be negative");
-      material.emissive *= factor;
+  void read_extensions(const tinygltf::ExtensionMap& extensions, const std::string& path,
+                       shared::Material& material) {
+    if (const auto strength = find_extension(extensions, "KHR_materials_emissive_strength", path)) {
+      material.emissive *= strength->number("emissiveStrength", 1.0f);
       if (!std::isfinite(material.emissive.x + material.emissive.y + material.emissive.z)) {
         strength->refuse("emissiveStrength", "makes the emission overflow");
       }
     }
-    if (const auto ior = extensions->object("KHR_materials_ior")) {
+    if (const auto ior = find_extension(extensions, "KHR_materials_ior", path)) {
       material.ior = ior->number("ior", 1.5f);
-      if (material.ior != 0.0f && material.ior < 1.0f)
+      if (material.ior != 0.0f && material.ior < 1.0f) {
         ior->refuse("ior", "must be 0, or 1 and more");
+      }
     }
-    if (extensions->has("KHR_materials_unlit")) material.flags |= shared::material_unlit;
+    if (const auto other =
+            find_extension(extensions, "KHR_materials_pbrSpecularGlossiness", path)) {
+      read_specular_glossiness(*other, material);
+    }
+    if (extensions.contains("KHR_materials_unlit")) material.flags |= shared::material_unlit;
   }
 
-  shared::TextureSlot read_slot(const JsonValue& json, bool srgb) {
-    return read_texture_slot(json, srgb, textures_, warnings_);
+  /// Replaces the core material, which files have as an approximation for others.
+  void read_specular_glossiness(const ExtensionValue& value, shared::Material& material) {
+    const auto diffuse = value.numbers<4>("diffuseFactor", {1.0f, 1.0f, 1.0f, 1.0f});
+    const auto specular = value.numbers<3>("specularFactor", {1.0f, 1.0f, 1.0f});
+    const SpecularGlossiness factors = {.diffuse = {diffuse[0], diffuse[1], diffuse[2], diffuse[3]},
+                                        .specular = {specular[0], specular[1], specular[2]},
+                                        .glossiness = value.number("glossinessFactor", 1.0f)};
+    const auto diffuse_info = value.object("diffuseTexture");
+    const auto specular_info = value.object("specularGlossinessTexture");
+    const auto texture_of = [](const std::optional<ExtensionValue>& info) {
+      return info ? info->index("index") : std::nullopt;
+    };
+    const auto convert = [&](ConvertedImage kind) {
+      if (!diffuse_info && !specular_info) return no_texture_slot();
+      shared::TextureSlot slot = read_uv(diffuse_info ? *diffuse_info : *specular_info, warnings_);
+      slot.texture = textures_.use_converted(kind, factors, texture_of(diffuse_info),
+                                             texture_of(specular_info));
+      return slot;
+    };
+    material.base_color_texture = convert(ConvertedImage::base_color);
+    material.metallic_roughness_texture = convert(ConvertedImage::metallic_roughness);
+    const bool in_texels = material.base_color_texture.texture != shared::no_texture;
+    const MetallicRoughness plain = to_metallic_roughness(factors);
+    material.base_color = in_texels ? glm::vec4(1.0f) : plain.base_color;
+    material.metallic = in_texels ? 1.0f : plain.metallic;
+    material.roughness = in_texels ? 1.0f : plain.roughness;
+  }
+
+  template <typename TextureInfo>
+  shared::TextureSlot read_slot(const TextureInfo& info, const std::string& path, bool srgb) {
+    return read_texture_slot(info, path, srgb, textures_, warnings_);
   }
 
   TextureTable& textures_;
@@ -141,17 +136,30 @@ shared::Material default_material() {
   return material;
 }
 
-MaterialTable read_materials(const JsonValue& root, TextureTable& textures, Warnings& warnings) {
+MaterialTable read_materials(const tinygltf::Model& model, TextureTable& textures,
+                             Warnings& warnings) {
   MaterialTable table;
   MaterialReader reader(textures, warnings);
-  for (const JsonValue& json : root.objects("materials")) {
-    table.materials.push_back(reader.read(json));
-    const auto extensions = json.object("extensions");
-    table.layers.push_back(extensions ? read_material_layers(*extensions, textures, warnings)
-                                      : MaterialLayers());
-    table.names.push_back(json.text("name"));
+  for (const tinygltf::Material& document : model.materials) {
+    const std::string path = item_path("", "materials", table.materials.size());
+    table.materials.push_back(reader.read(document, path));
+    table.layers.push_back(read_material_layers(document.extensions, path, textures, warnings));
+    table.names.push_back(document.name);
   }
   return table;
+}
+
+void drop_missing_images(Scene& scene, const std::vector<std::string>& problems,
+                         Warnings& warnings) {
+  for (const std::string& problem : problems) {
+    if (!problem.empty()) warnings.add(problem + ": materials are shown without it");
+  }
+  const auto drop = [&](shared::TextureSlot& slot) {
+    if (slot.texture == shared::no_texture) return;
+    if (!problems[scene.textures[slot.texture].image].empty()) slot = no_texture_slot();
+  };
+  for (shared::Material& material : scene.materials) drop(material.normal_texture);
+  for (MaterialLayers& layers : scene.material_layers) drop(layers.clearcoat_normal_texture);
 }
 
 void build_alpha_heap(Scene& scene) {

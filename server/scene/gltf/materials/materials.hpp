@@ -21,7 +21,13 @@ shared::Material default_material();
 
 /// All materials of the document; the textures they use are registered in `textures`.
 /// @throws ImportError
-MaterialTable read_materials(const JsonValue& root, TextureTable& textures, Warnings& warnings);
+MaterialTable read_materials(const tinygltf::Model& model, TextureTable& textures,
+                             Warnings& warnings);
+
+/// Removes normal maps that were not decoded: `problems` of the scene's images. The others are
+/// white, which leaves the factors as they are. Adds a warning for each problem.
+void drop_missing_images(Scene& scene, const std::vector<std::string>& problems,
+                         Warnings& warnings);
 
 /// Copies the level-0 alpha of masked base colors into scene.alpha_heap, for alpha tests of rays,
 /// and links the materials to it. Shared images are stored once.

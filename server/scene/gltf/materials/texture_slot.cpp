@@ -8,7 +8,7 @@ namespace {
 // KHR_texture_transform: translation * rotation * scale; the rotation is counter-clockwise with v
 // pointing down. The sample matrix in the extension's text rotates the other way; its test model
 // and the implementations agree on this one (github.com/KhronosGroup/glTF/issues/1563).
-void apply_transform(const JsonValue& transform, shared::TextureSlot& slot) {
+void apply_transform(const ExtensionValue& transform, shared::TextureSlot& slot) {
   const auto offset = transform.numbers<2>("offset", {0.0f, 0.0f});
   const auto scale = transform.numbers<2>("scale", {1.0f, 1.0f});
   const float rotation = transform.number("rotation", 0.0f);
@@ -18,28 +18,52 @@ void apply_transform(const JsonValue& transform, shared::TextureSlot& slot) {
   slot.transform_row1 = {-sine * scale[0], cosine * scale[1], offset[1], 0.0f};
 }
 
-}  // namespace
-
-shared::TextureSlot read_texture_slot(const JsonValue& json, bool srgb, TextureTable& textures,
-                                      Warnings& warnings) {
+shared::TextureSlot uv_slot(std::uint64_t uv_set, const std::optional<ExtensionValue>& transform,
+                            const std::string& path, Warnings& warnings) {
   shared::TextureSlot slot = no_texture_slot();
-  const std::uint32_t texture = json.required_index("index", textures.size(), "textures");
-  std::uint64_t uv_set = json.integer("texCoord", 0);
-  if (const auto transform = json.object("extensions", "KHR_texture_transform")) {
+  if (transform) {
     apply_transform(*transform, slot);
-    uv_set = transform->integer("texCoord", uv_set);
+    uv_set = transform->integer("texCoord").value_or(uv_set);
   }
   if (uv_set > 1) {
-    warnings.add(json.path() + ".texCoord: only the sets 0 and 1 are kept, 0 is used");
+    warnings.add(path + ".texCoord: only the sets 0 and 1 are kept, 0 is used");
     uv_set = 0;
   }
   slot.uv_set = static_cast<std::uint32_t>(uv_set);
-  slot.texture = textures.use(texture, srgb);
+  return slot;
+}
+
+std::optional<ExtensionValue> transform_of(const ExtensionValue& info) {
+  const auto extensions = info.object("extensions");
+  return extensions ? extensions->object("KHR_texture_transform") : std::nullopt;
+}
+
+}  // namespace
+
+shared::TextureSlot read_texture_slot(int texture, int uv_set,
+                                      const std::optional<ExtensionValue>& transform,
+                                      const std::string& path, bool srgb, TextureTable& textures,
+                                      Warnings& warnings) {
+  const auto index = to_index(texture);
+  if (!index) return no_texture_slot();
+  shared::TextureSlot slot = uv_slot(static_cast<std::uint64_t>(uv_set), transform, path, warnings);
+  slot.texture = textures.use(*index, srgb);
   if (slot.texture == shared::no_texture) {
-    warnings.add("textures[" + std::to_string(texture) +
-                 "] has no PNG, JPEG or WebP image and was left out");
+    warnings.add(item_path("", "textures", *index) +
+                 " has no image that can be read and was left out");
   }
   return slot;
+}
+
+shared::TextureSlot read_uv(const ExtensionValue& info, Warnings& warnings) {
+  return uv_slot(info.integer("texCoord").value_or(0), transform_of(info), info.path(), warnings);
+}
+
+shared::TextureSlot read_texture_slot(const ExtensionValue& info, bool srgb, TextureTable& textures,
+                                      Warnings& warnings) {
+  return read_texture_slot(static_cast<int>(*info.index("index")),
+                           static_cast<int>(info.index("texCoord").value_or(0)), transform_of(info),
+                           info.path(), srgb, textures, warnings);
 }
 
 }  // namespace heliograph::scene

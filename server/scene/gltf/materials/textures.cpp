@@ -1,46 +1,30 @@
 #include "scene/gltf/materials/textures.hpp"
 
+#include <algorithm>
+
+#include "scene/gltf/document/extension_value.hpp"
+
 namespace heliograph::scene {
 namespace {
 
-std::uint32_t read_wrap(const JsonValue& sampler, std::string_view key) {
-  switch (sampler.integer(key, 10497)) {
-    case 10497:
-      return shared::wrap_repeat;
-    case 33071:
+std::uint32_t to_wrap(int mode) {
+  switch (mode) {
+    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
       return shared::wrap_clamp;
-    case 33648:
+    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
       return shared::wrap_mirror;
     default:
-      sampler.refuse(key, "is not a wrapping mode");
+      return shared::wrap_repeat;
   }
 }
 
-Sampler read_sampler(const JsonValue& json) {
+Sampler to_sampler(const tinygltf::Sampler& document) {
   Sampler sampler;
-  sampler.wrap_s = read_wrap(json, "wrapS");
-  sampler.wrap_t = read_wrap(json, "wrapT");
-  switch (json.integer("magFilter", 9729)) {
-    case 9728:
-      sampler.magnify = Filter::nearest;
-      break;
-    case 9729:
-      break;
-    default:
-      json.refuse("magFilter", "is not a magnification filter");
-  }
-  const std::uint64_t minify = json.integer("minFilter", 9987);
-  switch (minify) {
-    case 9728:
-    case 9729:
-    case 9984:
-    case 9985:
-    case 9986:
-    case 9987:
-      break;
-    default:
-      json.refuse("minFilter", "is not a minification filter");
-  }
+  sampler.wrap_s = to_wrap(document.wrapS);
+  sampler.wrap_t = to_wrap(document.wrapT);
+  if (document.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST) sampler.magnify = Filter::nearest;
+  const int minify =
+      document.minFilter < 0 ? TINYGLTF_TEXTURE_FILTER_LINEAR_MIPMAP_LINEAR : document.minFilter;
   // 9984 and up: bit 0 is the filter within a level, bit 1 the filter between levels.
   sampler.minify = minify % 2 == 0 ? Filter::nearest : Filter::linear;
   sampler.mipmapped = minify >= 9984;
@@ -50,18 +34,19 @@ Sampler read_sampler(const JsonValue& json) {
 
 }  // namespace
 
-TextureTable::TextureTable(const JsonValue& root) {
-  std::vector<Sampler> samplers;
-  for (const JsonValue& json : root.objects("samplers")) samplers.push_back(read_sampler(json));
-  const std::size_t image_count = root.objects("images").size();
-  for (const JsonValue& json : root.objects("textures")) {
+TextureTable::TextureTable(const tinygltf::Model& model) {
+  for (const tinygltf::Texture& document : model.textures) {
     Declared& texture = textures_.emplace_back();
-    texture.image = json.index("source", image_count, "images");
-    if (const auto webp = json.object("extensions", "EXT_texture_webp")) {
-      texture.image = webp->required_index("source", image_count, "images");
+    texture.image = to_index(document.source);
+    // The texture's own source is for readers that know neither.
+    for (const char* const extension : {"KHR_texture_basisu", "EXT_texture_webp"}) {
+      const auto other = find_extension(document.extensions, extension, "");
+      if (!other || !other->has("source")) continue;
+      texture.image = other->index("source");
+      break;
     }
-    if (const auto sampler = json.index("sampler", samplers.size(), "samplers")) {
-      texture.sampler = samplers[*sampler];
+    if (const auto sampler = to_index(document.sampler)) {
+      texture.sampler = to_sampler(model.samplers[*sampler]);
     }
   }
 }
@@ -76,6 +61,25 @@ std::uint32_t TextureTable::use(std::uint32_t index, bool srgb) {
       texture_of_use_.try_emplace({index, srgb}, static_cast<std::uint32_t>(used_textures_.size()));
   if (new_texture) used_textures_.push_back({image->second, declared.sampler});
   return texture->second;
+}
+
+std::uint32_t TextureTable::use_converted(ConvertedImage kind, const SpecularGlossiness& factors,
+                                          std::optional<std::uint32_t> diffuse,
+                                          std::optional<std::uint32_t> specular) {
+  const auto image_of = [&](std::optional<std::uint32_t> texture) {
+    return texture ? textures_[*texture].image : std::nullopt;
+  };
+  const ImageConversion conversion{kind, factors, image_of(diffuse), image_of(specular)};
+  if (!conversion.diffuse && !conversion.specular) return shared::no_texture;
+  auto found = std::ranges::find(image_uses_, std::optional(conversion), &ImageUse::conversion);
+  if (found == image_uses_.end()) {
+    const std::uint32_t source = conversion.diffuse ? *conversion.diffuse : *conversion.specular;
+    found = image_uses_.insert(
+        found, {source, kind == ConvertedImage::base_color, std::optional(conversion)});
+  }
+  used_textures_.push_back({static_cast<std::uint32_t>(found - image_uses_.begin()),
+                            textures_[diffuse ? *diffuse : *specular].sampler});
+  return static_cast<std::uint32_t>(used_textures_.size() - 1);
 }
 
 }  // namespace heliograph::scene

@@ -16,14 +16,19 @@ namespace heliograph::scene {
 /// both, without duplicates.
 class TextureTable {
  public:
-  /// @throws ImportError
-  explicit TextureTable(const JsonValue& root);
+  explicit TextureTable(const tinygltf::Model& model);
 
   std::size_t size() const { return textures_.size(); }
 
   /// The scene texture for one use of document texture `index`, or shared::no_texture when its
   /// image requires an unsupported extension.
   std::uint32_t use(std::uint32_t index, bool srgb);
+
+  /// The scene texture of an image converted from those of two textures, with the sampler of the
+  /// first that there is; shared::no_texture where neither has an image.
+  std::uint32_t use_converted(ConvertedImage kind, const SpecularGlossiness& factors,
+                              std::optional<std::uint32_t> diffuse,
+                              std::optional<std::uint32_t> specular);
 
   const std::vector<ImageUse>& image_uses() const { return image_uses_; }
   const std::vector<Texture>& used_textures() const { return used_textures_; }

@@ -4,22 +4,61 @@
 #include <set>
 #include <string>
 
+#include "scene/gltf/document/extension_value.hpp"
+
 namespace heliograph::scene {
 namespace {
 
-Interpolation read_interpolation(const JsonValue& sampler) {
-  const std::string name = sampler.text("interpolation");
+Interpolation to_interpolation(const std::string& name) {
   if (name == "STEP") return Interpolation::step;
   if (name == "CUBICSPLINE") return Interpolation::cubic_spline;
   return Interpolation::linear;
 }
 
-std::vector<float> read_times(const JsonValue& sampler, const Accessor& input) {
+/// A sampler of an animation, and how errors name it.
+struct SamplerSource {
+  const tinygltf::AnimationSampler& sampler;
+  std::string path;
+
+  const Accessor& input(std::span<const Accessor> accessors) const {
+    return accessors[static_cast<std::size_t>(sampler.input)];
+  }
+  const Accessor& output(std::span<const Accessor> accessors) const {
+    return accessors[static_cast<std::size_t>(sampler.output)];
+  }
+  [[noreturn]] void refuse(std::string_view member, std::string_view reason) const {
+    refuse_at(path, member, reason);
+  }
+};
+
+SamplerSource sampler_of(const tinygltf::Animation& animation, const std::string& path,
+                         const tinygltf::AnimationChannel& channel) {
+  const auto index = static_cast<std::size_t>(channel.sampler);
+  return {animation.samplers[index], item_path(path, "samplers", index)};
+}
+
+std::vector<float> read_times(const SamplerSource& source, const Accessor& input) {
   std::vector<float> times = read_numbers(input);
-  if (times.front() < 0.0f) sampler.refuse("input", "starts before 0 seconds");
-  const auto unordered = std::ranges::adjacent_find(times, std::ranges::greater_equal());
-  if (unordered != times.end()) sampler.refuse("input", "must ascend strictly");
+  if (times.front() < 0.0f) source.refuse("input", "starts before 0 seconds");
+  if (!std::ranges::is_sorted(times)) source.refuse("input", "must ascend");
   return times;
+}
+
+/// Drops keys at the same time as the one before.
+void drop_repeated_keys(Channel& channel, std::size_t numbers_per_key, const SamplerSource& source,
+                        Warnings& warnings) {
+  if (std::ranges::adjacent_find(channel.times) == channel.times.end()) return;
+  std::size_t kept = 1;
+  for (std::size_t i = 1; i < channel.times.size(); ++i) {
+    if (channel.times[i] == channel.times[kept - 1]) continue;
+    channel.times[kept] = channel.times[i];
+    std::copy_n(channel.values.begin() + std::ptrdiff_t(i * numbers_per_key), numbers_per_key,
+                channel.values.begin() + std::ptrdiff_t(kept * numbers_per_key));
+    ++kept;
+  }
+  warnings.add(source.path + ".input repeats times: of such keys only the first is used");
+  channel.times.resize(kept);
+  channel.values.resize(kept * numbers_per_key);
 }
 
 ElementType element_of(Property property) {
@@ -40,9 +79,10 @@ Property to_property(std::string_view path) {
   return Property::translation;
 }
 
-Channel read_curve(const JsonValue& sampler, std::span<const Accessor> accessors, Channel channel) {
-  const Accessor& input = accessors[*sampler.index("input", accessors.size(), "accessors")];
-  const Accessor& output = accessors[*sampler.index("output", accessors.size(), "accessors")];
+Channel read_curve(const SamplerSource& sampler, std::span<const Accessor> accessors,
+                   Channel channel, Warnings& warnings) {
+  const Accessor& input = sampler.input(accessors);
+  const Accessor& output = sampler.output(accessors);
   if (output.element != element_of(channel.property)) {
     sampler.refuse("output", "has the wrong element type for what it animates");
   }
@@ -52,31 +92,30 @@ Channel read_curve(const JsonValue& sampler, std::span<const Accessor> accessors
   if (whole && !(may_be_whole && output.normalized)) {
     sampler.refuse("output", "has the wrong component type for what it animates");
   }
-  channel.interpolation = read_interpolation(sampler);
+  channel.interpolation = to_interpolation(sampler.sampler.interpolation);
   channel.times = read_times(sampler, input);
   channel.values = read_numbers(output);
   const std::uint64_t per_key = channel.interpolation == Interpolation::cubic_spline ? 3 : 1;
   if (channel.values.size() != channel.times.size() * per_key * channel.width) {
     sampler.refuse("output", "does not match the number of keys");
   }
+  drop_repeated_keys(channel, per_key * channel.width, sampler, warnings);
   return channel;
 }
 
 /// Nullopt for channels that animate nothing in the scene.
-std::optional<Channel> read_target(const JsonValue& json, const NodeTable& nodes,
-                                   Warnings& warnings) {
-  const JsonValue target = *json.object("target");
-  const std::string path = target.text("path");
-  if (path == "pointer") {
+std::optional<Channel> read_target(const tinygltf::AnimationChannel& document,
+                                   const NodeTable& nodes, Warnings& warnings) {
+  if (document.target_path == "pointer") {
     warnings.add("animations of other properties than those of nodes are left out");
     return std::nullopt;
   }
-  const auto document_node = target.index("node", nodes.of_document.size(), "nodes");
+  const auto document_node = to_index(document.target_node);
   const auto node = document_node ? nodes.of_document[*document_node] : std::nullopt;
   if (!node) return std::nullopt;
   Channel channel;
   channel.node = *node;
-  channel.property = to_property(path);
+  channel.property = to_property(document.target_path);
   channel.width = component_count(element_of(channel.property));
   const Node& moved = nodes.nodes[*node];
   if (channel.property == Property::weights) {
@@ -92,20 +131,19 @@ std::optional<Channel> read_target(const JsonValue& json, const NodeTable& nodes
   return channel;
 }
 
-Clip read_clip(const JsonValue& json, std::span<const Accessor> accessors, const NodeTable& nodes,
-               Warnings& warnings) {
+Clip read_clip(const tinygltf::Animation& animation, const std::string& path,
+               std::span<const Accessor> accessors, const NodeTable& nodes, Warnings& warnings) {
   Clip clip;
-  clip.name = json.text("name");
-  const std::vector<JsonValue> samplers = json.objects("samplers");
+  clip.name = animation.name;
   std::set<std::pair<std::uint32_t, Property>> targets;
-  for (const JsonValue& channel_json : json.objects("channels")) {
-    auto channel = read_target(channel_json, nodes, warnings);
+  for (std::size_t i = 0; i < animation.channels.size(); ++i) {
+    auto channel = read_target(animation.channels[i], nodes, warnings);
     if (!channel) continue;
     if (!targets.insert({channel->node, channel->property}).second) {
-      channel_json.refuse("target", "is animated twice");
+      refuse_at(item_path(path, "channels", i), "target", "is animated twice");
     }
-    const auto sampler = channel_json.required_index("sampler", samplers.size(), "samplers");
-    clip.channels.push_back(read_curve(samplers[sampler], accessors, std::move(*channel)));
+    clip.channels.push_back(read_curve(sampler_of(animation, path, animation.channels[i]),
+                                       accessors, std::move(*channel), warnings));
     clip.duration = std::max(clip.duration, clip.channels.back().times.back());
   }
   return clip;
@@ -113,36 +151,28 @@ Clip read_clip(const JsonValue& json, std::span<const Accessor> accessors, const
 
 /// Channels may share samplers and clips may share accessors, so that the file's size is no limit:
 /// charges all of them before the first is read.
-void pay_for_keys(const JsonValue& animation, std::span<const Accessor> accessors,
-                  ByteBudget& budget) {
-  const std::vector<JsonValue> samplers = animation.objects("samplers");
-  for (const JsonValue& channel : animation.objects("channels")) {
-    const JsonValue& sampler =
-        samplers[channel.required_index("sampler", samplers.size(), "samplers")];
-    for (const char* const end : {"input", "output"}) {
-      const Accessor& keys = accessors[*sampler.index(end, accessors.size(), "accessors")];
-      budget.take(keys.count, component_count(keys.element) * sizeof(float), sampler.path());
+void pay_for_keys(const tinygltf::Animation& animation, const std::string& path,
+                  std::span<const Accessor> accessors, ByteBudget& budget) {
+  for (const tinygltf::AnimationChannel& channel : animation.channels) {
+    const SamplerSource sampler = sampler_of(animation, path, channel);
+    for (const Accessor* keys : {&sampler.input(accessors), &sampler.output(accessors)}) {
+      budget.take(keys->count, component_count(keys->element) * sizeof(float), sampler.path);
     }
   }
 }
 
-std::vector<glm::mat4> read_inverse_binds(const JsonValue& skin,
-                                          std::span<const Accessor> accessors, std::size_t joints) {
-  const auto index = skin.index("inverseBindMatrices", accessors.size(), "accessors");
-  if (!index) return std::vector<glm::mat4>(joints, glm::mat4(1.0f));
-  return read_matrices(accessors[*index], joints);
-}
-
 }  // namespace
 
-std::vector<Clip> read_clips(const JsonValue& root, std::span<const Accessor> accessors,
+std::vector<Clip> read_clips(const tinygltf::Model& model, std::span<const Accessor> accessors,
                              const NodeTable& nodes, ByteBudget& budget, Warnings& warnings) {
   std::vector<Clip> clips;
   std::set<std::string> names;
-  const std::vector<JsonValue> animations = root.objects("animations");
-  for (const JsonValue& json : animations) pay_for_keys(json, accessors, budget);
-  for (const JsonValue& json : animations) {
-    Clip clip = read_clip(json, accessors, nodes, warnings);
+  const auto path = [](std::size_t i) { return item_path("", "animations", i); };
+  for (std::size_t i = 0; i < model.animations.size(); ++i) {
+    pay_for_keys(model.animations[i], path(i), accessors, budget);
+  }
+  for (std::size_t i = 0; i < model.animations.size(); ++i) {
+    Clip clip = read_clip(model.animations[i], path(i), accessors, nodes, warnings);
     if (clip.channels.empty()) continue;
     if (clip.name.empty()) clip.name = "clip " + std::to_string(clips.size() + 1);
     const std::string requested = clip.name;
@@ -154,18 +184,20 @@ std::vector<Clip> read_clips(const JsonValue& root, std::span<const Accessor> ac
   return clips;
 }
 
-std::vector<Skin> read_skins(const JsonValue& root, std::span<const Accessor> accessors,
+std::vector<Skin> read_skins(const tinygltf::Model& model, std::span<const Accessor> accessors,
                              const NodeTable& nodes, ByteBudget& budget) {
   std::vector<Skin> skins;
-  for (const JsonValue& json : root.objects("skins")) {
+  for (const tinygltf::Skin& document : model.skins) {
+    budget.take(document.joints.size(), sizeof(glm::mat4), item_path("", "skins", skins.size()));
     Skin& skin = skins.emplace_back();
-    const auto joints = json.indices("joints", nodes.of_document.size(), "nodes");
-    budget.take(joints.size(), sizeof(glm::mat4), json.path());
-    for (const std::uint32_t joint : joints) {
-      if (nodes.of_document[joint]) skin.joints.push_back(*nodes.of_document[joint]);
+    for (const int joint : document.joints) {
+      const auto node = nodes.of_document[static_cast<std::size_t>(joint)];
+      if (node) skin.joints.push_back(*node);
     }
-    if (skin.joints.size() < joints.size()) skin.joints.clear();
-    skin.inverse_bind = read_inverse_binds(json, accessors, skin.joints.size());
+    if (skin.joints.size() < document.joints.size()) skin.joints.clear();
+    const auto matrices = to_index(document.inverseBindMatrices);
+    skin.inverse_bind = matrices ? read_matrices(accessors[*matrices], skin.joints.size())
+                                 : std::vector<glm::mat4>(skin.joints.size(), glm::mat4(1.0f));
   }
   return skins;
 }

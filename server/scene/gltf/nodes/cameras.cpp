@@ -5,39 +5,31 @@
 #include <set>
 #include <string>
 
+#include "scene/gltf/schema/place.hpp"
+
 namespace heliograph::scene {
 namespace {
 
-float required_number(const JsonValue& json, std::string_view key) {
-  const auto value = json.number(key);
-  if (!value) json.refuse(key, "is missing");
-  return *value;
-}
-
-void read_perspective(const JsonValue& json, Camera& camera) {
-  const float vertical_fov = required_number(json, "yfov");
-  if (vertical_fov <= 0.0f || vertical_fov >= 3.14159265f)
-    json.refuse("yfov", "must be between 0 and pi");
-  camera.vertical_fov = glm::degrees(vertical_fov);
-  camera.near_plane = required_number(json, "znear");
-  if (camera.near_plane <= 0.0f) json.refuse("znear", "must be more than 0");
-  const auto far_plane = json.number("zfar");
-  if (far_plane && *far_plane <= camera.near_plane) {
-    json.refuse("zfar", "must be more than znear");
+void read_perspective(const tinygltf::PerspectiveCamera& document, const std::string& path,
+                      Camera& camera) {
+  camera.vertical_fov = glm::degrees(static_cast<float>(document.yfov));
+  camera.near_plane = static_cast<float>(document.znear);
+  // tinygltf's 0 stands for an infinite projection.
+  if (document.zfar != 0.0 && document.zfar <= document.znear) {
+    refuse_at(path, "zfar", "must be more than znear");
   }
-  if (json.number("aspectRatio", 1.0f) <= 0.0f) json.refuse("aspectRatio", "must be more than 0");
 }
 
-void read_orthographic(const JsonValue& json, Camera& camera) {
-  if (required_number(json, "xmag") == 0.0f) json.refuse("xmag", "must not be 0");
-  camera.orthographic_height = 2.0f * std::abs(required_number(json, "ymag"));
+void read_orthographic(const tinygltf::OrthographicCamera& document, const std::string& path,
+                       Camera& camera) {
+  if (document.xmag == 0.0) refuse_at(path, "xmag", "must not be 0");
+  camera.orthographic_height = 2.0f * std::abs(static_cast<float>(document.ymag));
   if (camera.orthographic_height == 0.0f || !std::isfinite(camera.orthographic_height)) {
-    json.refuse("ymag", "must not be 0, nor too large");
+    refuse_at(path, "ymag", "must not be 0, nor too large");
   }
-  camera.near_plane = required_number(json, "znear");
-  camera.far_plane = required_number(json, "zfar");
-  if (camera.near_plane < 0.0f) json.refuse("znear", "must not be negative");
-  if (camera.far_plane <= camera.near_plane) json.refuse("zfar", "must be more than znear");
+  camera.near_plane = static_cast<float>(document.znear);
+  camera.far_plane = static_cast<float>(document.zfar);
+  if (camera.far_plane <= camera.near_plane) refuse_at(path, "zfar", "must be more than znear");
 }
 
 glm::vec3 normalized_or(const glm::vec3& vector, const glm::vec3& fallback) {
@@ -57,18 +49,17 @@ float focus_distance(const Camera& camera, const glm::vec3& forward, const Bound
 
 }  // namespace
 
-std::vector<Camera> read_cameras(const JsonValue& root) {
+std::vector<Camera> read_cameras(const tinygltf::Model& model) {
   std::vector<Camera> cameras;
-  for (const JsonValue& json : root.objects("cameras")) {
+  for (const tinygltf::Camera& document : model.cameras) {
+    const std::string path = item_path("", "cameras", cameras.size()) + "." + document.type;
     Camera& camera = cameras.emplace_back();
-    camera.name = json.text("name");
-    const std::string type = json.text("type");
-    if (type != "perspective" && type != "orthographic") {
-      json.refuse("type", "is not perspective or orthographic");
+    camera.name = document.name;
+    if (document.type == "perspective") {
+      read_perspective(document.perspective, path, camera);
+    } else {
+      read_orthographic(document.orthographic, path, camera);
     }
-    const auto properties = json.object(type);
-    if (!properties) json.refuse(type, "is missing");
-    (type == "perspective" ? read_perspective : read_orthographic)(*properties, camera);
   }
   return cameras;
 }

@@ -9,7 +9,7 @@
 namespace heliograph::scene {
 
 /// The document's cameras, before they are placed by nodes. @throws ImportError
-std::vector<Camera> read_cameras(const JsonValue& root);
+std::vector<Camera> read_cameras(const tinygltf::Model& model);
 
 /// Makes the names of a scene's cameras unique, so that each can be chosen; unnamed ones are called
 /// "camera 1", by their place in the list.

@@ -2,17 +2,19 @@
 
 #include <string>
 
+#include "scene/gltf/document/extension_value.hpp"
+
 namespace heliograph::scene {
 namespace {
 
 /// The values of one attribute, or `fallback` for each of the `count` instances.
 template <int components>
-std::vector<glm::vec<components, float>> read_places(const JsonValue& attributes,
-                                                     std::string_view name, ElementType type,
+std::vector<glm::vec<components, float>> read_places(const ExtensionValue& attributes,
+                                                     const std::string& name, ElementType type,
                                                      std::span<const Accessor> accessors,
                                                      std::uint32_t count,
                                                      const glm::vec<components, float>& fallback) {
-  const auto index = attributes.index(name, accessors.size(), "accessors");
+  const auto index = attributes.index(name);
   if (!index) return std::vector<glm::vec<components, float>>(count, fallback);
   const Accessor& accessor = accessors[*index];
   if (accessor.element != type) attributes.refuse(name, "has the wrong element type");
@@ -23,10 +25,10 @@ std::vector<glm::vec<components, float>> read_places(const JsonValue& attributes
   return read_vectors<components>(accessor);
 }
 
-std::uint32_t count_places(const JsonValue& attributes, std::span<const Accessor> accessors) {
+std::uint32_t count_places(const ExtensionValue& attributes, std::span<const Accessor> accessors) {
   std::optional<std::uint32_t> count;
-  for (const std::string& name : attributes.keys()) {
-    const std::uint32_t index = attributes.required_index(name, accessors.size(), "accessors");
+  for (const std::string& name : attributes.members()) {
+    const std::uint32_t index = *attributes.index(name);
     if (count && accessors[index].count != *count) {
       attributes.refuse(name, "differs in count from the other attributes");
     }
@@ -36,7 +38,7 @@ std::uint32_t count_places(const JsonValue& attributes, std::span<const Accessor
   return *count;
 }
 
-glm::quat to_rotation(const JsonValue& attributes, const glm::vec4& value) {
+glm::quat to_rotation(const ExtensionValue& attributes, const glm::vec4& value) {
   const float length = glm::length(value);
   if (!(length > 1e-6f)) attributes.refuse("ROTATION", "contains a quaternion of zero length");
   return {value.w / length, value.x / length, value.y / length, value.z / length};
@@ -44,13 +46,14 @@ glm::quat to_rotation(const JsonValue& attributes, const glm::vec4& value) {
 
 }  // namespace
 
-std::optional<std::vector<Transform>> read_instancing(const JsonValue& node,
+std::optional<std::vector<Transform>> read_instancing(const tinygltf::Node& node,
+                                                      const std::string& path,
                                                       std::span<const Accessor> accessors,
                                                       std::uint64_t limit) {
-  const auto extension = node.object("extensions", "EXT_mesh_gpu_instancing");
+  const auto extension = find_extension(node.extensions, "EXT_mesh_gpu_instancing", path);
   if (!extension) return std::nullopt;
   const auto attributes = extension->object("attributes");
-  if (!attributes) extension->refuse("attributes", "is missing");
+  if (!attributes) extension->refuse("attributes", "must have at least one attribute");
   const std::uint32_t count = count_places(*attributes, accessors);
   if (count > limit) {
     extension->refuse("exceeds the limit of " + std::to_string(limit) + " instances");

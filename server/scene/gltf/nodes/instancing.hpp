@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "scene/gltf/document/accessors.hpp"
-#include "scene/gltf/document/json_value.hpp"
 #include "scene/scene.hpp"
 
 namespace heliograph::scene {
@@ -13,7 +12,8 @@ namespace heliograph::scene {
 /// The instance transforms of EXT_mesh_gpu_instancing, relative to the node; empty without the
 /// extension. At most `limit`.
 /// @throws ImportError
-std::optional<std::vector<Transform>> read_instancing(const JsonValue& node,
+std::optional<std::vector<Transform>> read_instancing(const tinygltf::Node& node,
+                                                      const std::string& path,
                                                       std::span<const Accessor> accessors,
                                                       std::uint64_t limit);
 

@@ -4,121 +4,96 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/gltf/document/extension_value.hpp"
+
 namespace heliograph::scene {
 namespace {
 
-constexpr float half_pi = 0.5f * std::numbers::pi_v<float>;
-
 // The cone's falloff as a scale and an offset to the cosine, from the extension's text.
-void read_cone(const JsonValue& json, shared::Light& light) {
-  float inner = 0.0f;
-  float outer = half_pi / 2.0f;
-  if (const auto spot = json.object("spot")) {
-    inner = spot->number("innerConeAngle", inner);
-    outer = spot->number("outerConeAngle", outer);
-    if (inner < 0.0f || inner >= outer)
-      spot->refuse("innerConeAngle", "must be from 0 to below outerConeAngle");
-    if (outer > half_pi + 1e-4f) spot->refuse("outerConeAngle", "must be at most pi / 2");
+void read_cone(const tinygltf::SpotLight& spot, const std::string& path, shared::Light& light) {
+  if (spot.innerConeAngle >= spot.outerConeAngle) {
+    refuse_at(path + ".spot", "innerConeAngle", "must be from 0 to below outerConeAngle");
   }
-  light.spot_scale = 1.0f / std::max(0.001f, std::cos(inner) - std::cos(outer));
-  light.spot_offset = -std::cos(outer) * light.spot_scale;
+  const auto inner = static_cast<float>(std::cos(spot.innerConeAngle));
+  const auto outer = static_cast<float>(std::cos(spot.outerConeAngle));
+  light.spot_scale = 1.0f / std::max(0.001f, inner - outer);
+  light.spot_offset = -outer * light.spot_scale;
 }
 
-std::uint32_t read_type(const JsonValue& json) {
-  const std::string type = json.text("type");
-  if (type == "directional") return shared::light_directional;
-  if (type == "point") return shared::light_point;
-  if (type == "spot") return shared::light_spot;
-  json.refuse("type", "is not directional, point or spot");
-}
-
-// "color" times the member `strength`.
-glm::vec3 read_color(const JsonValue& json, std::string_view strength) {
-  const float factor = json.number(strength, 1.0f);
-  if (factor < 0.0f) json.refuse(strength, "must not be negative");
-  const auto color = json.numbers<3>("color", {1.0f, 1.0f, 1.0f});
-  glm::vec3 result;
-  for (int i = 0; i < 3; ++i) {
-    if (color[i] < 0.0f) json.refuse("color", "must not be negative");
-    result[i] = color[i] * factor;
-    if (!std::isfinite(result[i])) json.refuse(strength, "is too large");
-  }
-  return result;
-}
-
-Light read_light(const JsonValue& json) {
-  Light light;
-  light.name = json.text("name");
-  light.device = {};
-  light.device.type = read_type(json);
-  light.device.direction = {0.0f, 0.0f, -1.0f};
-  light.device.tangent = {1.0f, 0.0f, 0.0f};
-  light.device.color = read_color(json, "intensity");
-  if (const auto range = json.number("range")) {
-    if (*range <= 0.0f) json.refuse("range", "must be more than 0");
-    light.device.range = *range;
-  }
-  if (light.device.type == shared::light_spot) read_cone(json, light.device);
+shared::Light unplaced(std::uint32_t type) {
+  shared::Light light{};
+  light.type = type;
+  light.direction = {0.0f, 0.0f, -1.0f};
+  light.tangent = {1.0f, 0.0f, 0.0f};
   return light;
 }
 
-float read_length(const JsonValue& json, std::string_view key) {
-  constexpr float max_length = 1e6f;
-  const auto length = json.number(key);
-  if (!length) json.refuse(key, "is missing");
-  if (*length <= 0.0f || *length > max_length)
-    json.refuse(key, "must be more than 0 and at most 1e6 metres");
-  return *length;
+std::uint32_t to_type(const std::string& name) {
+  if (name == "directional") return shared::light_directional;
+  return name == "point" ? shared::light_point : shared::light_spot;
 }
 
-Light read_area_light(const JsonValue& json) {
+/// `color` times the member `strength` of the object at `path`.
+glm::vec3 scaled(const glm::vec3& color, double factor, const std::string& path,
+                 const char* strength) {
+  const glm::vec3 result = color * static_cast<float>(factor);
+  if (!std::isfinite(result.x + result.y + result.z)) refuse_at(path, strength, "is too large");
+  return result;
+}
+
+Light read_light(const tinygltf::Light& document, const std::string& path) {
   Light light;
-  light.device = {};
-  light.device.direction = {0.0f, 0.0f, -1.0f};
-  light.device.tangent = {1.0f, 0.0f, 0.0f};
-  light.device.color = read_color(json, "radiance");
-  const std::string shape = json.text("shape");
-  if (shape == "rect") {
-    light.device.type = shared::light_rectangle;
-    light.device.half_width = 0.5f * read_length(json, "width");
-    light.device.half_height = 0.5f * read_length(json, "height");
+  light.name = document.name;
+  light.device = unplaced(to_type(document.type));
+  glm::vec3 color(1.0f);
+  for (std::size_t i = 0; i < document.color.size(); ++i) {
+    color[int(i)] = static_cast<float>(document.color[i]);
+  }
+  light.device.color = scaled(color, document.intensity, path, "intensity");
+  light.device.range = static_cast<float>(document.range);  // 0: infinite
+  if (light.device.type == shared::light_spot) read_cone(document.spot, path, light.device);
+  return light;
+}
+
+Light read_area_light(const ExtensionValue& value) {
+  const bool disk = value.text("shape") == "disk";
+  Light light;
+  light.device = unplaced(disk ? shared::light_disk : shared::light_rectangle);
+  const auto color = value.numbers<3>("color", {1.0f, 1.0f, 1.0f});
+  light.device.color = scaled({color[0], color[1], color[2]}, value.number("radiance", 1.0f),
+                              value.path(), "radiance");
+  if (disk) {
+    light.device.radius = *value.number("radius");
+  } else {
+    light.device.half_width = 0.5f * *value.number("width");
+    light.device.half_height = 0.5f * *value.number("height");
     light.device.radius = std::sqrt(4.0f * light.device.half_width * light.device.half_height /
                                     std::numbers::pi_v<float>);
-  } else if (shape == "disk") {
-    light.device.type = shared::light_disk;
-    light.device.radius = read_length(json, "radius");
-  } else {
-    json.refuse("shape", "is not rect or disk");
   }
   return light;
 }
 
 }  // namespace
 
-NodeLight read_node_light(const JsonValue& node, std::size_t light_count) {
+NodeLight read_node_light(const tinygltf::Node& node, const std::string& path) {
   NodeLight result;
-  if (const auto extension = node.object("extensions", "KHR_lights_punctual")) {
-    result.punctual = extension->required_index("light", light_count, "lights");
+  if (const auto own = find_extension(node.extensions, "KHR_lights_punctual", path)) {
+    result.punctual = own->index("light");
   }
-  // "extras" may be of any type (glTF 3.12): only our own keys are read.
-  if (!node.is_object("extras")) return result;
-  const auto extras = node.object("extras");
-  if (extras->is_object("areaLight")) result.area = read_area_light(*extras->object("areaLight"));
+  const ExtensionValue extras(node.extras, path + ".extras");
+  if (const auto area = extras.object("areaLight")) result.area = read_area_light(*area);
   if (!result.punctual) return result;
-  result.angular_diameter = extras->number("angularDiameterDeg", result.angular_diameter);
-  if (result.angular_diameter < 0.0f || result.angular_diameter > 90.0f) {
-    extras->refuse("angularDiameterDeg", "must be from 0 to 90 degrees");
-  }
-  result.radius = extras->number("radius", result.radius);
-  if (result.radius < 0.0f) extras->refuse("radius", "must not be negative");
+  result.angular_diameter = extras.number("angularDiameterDeg", result.angular_diameter);
+  result.radius = extras.number("radius", result.radius);
   return result;
 }
 
-std::vector<Light> read_lights(const JsonValue& root) {
+std::vector<Light> read_lights(const tinygltf::Model& model) {
   std::vector<Light> lights;
-  const auto extension = root.object("extensions", "KHR_lights_punctual");
-  if (!extension) return lights;
-  for (const JsonValue& json : extension->objects("lights")) lights.push_back(read_light(json));
+  const std::string path = "extensions.KHR_lights_punctual";
+  for (const tinygltf::Light& document : model.lights) {
+    lights.push_back(read_light(document, item_path(path, "lights", lights.size())));
+  }
   return lights;
 }
 

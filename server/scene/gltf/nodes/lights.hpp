@@ -20,12 +20,11 @@ struct NodeLight {
   explicit operator bool() const { return punctual || area; }
 };
 
-/// @throws ImportError
-NodeLight read_node_light(const JsonValue& node, std::size_t light_count);
+NodeLight read_node_light(const tinygltf::Node& node, const std::string& path);
 
 /// The lights of KHR_lights_punctual, before they are placed by nodes: at the origin, direction -Z.
 /// @throws ImportError
-std::vector<Light> read_lights(const JsonValue& root);
+std::vector<Light> read_lights(const tinygltf::Model& model);
 
 /// The light in world space, attached to a node with this world transform. Sizes do not scale, like
 /// intensities in KHR_lights_punctual.

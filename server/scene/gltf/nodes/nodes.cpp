@@ -6,6 +6,7 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <utility>
 
+#include "scene/gltf/document/extension_value.hpp"
 #include "scene/gltf/nodes/instancing.hpp"
 
 namespace heliograph::scene {
@@ -16,84 +17,101 @@ struct DocumentNode {
   Node node;
   NodeAttachments attachments;
   std::vector<std::uint32_t> children;
+  bool visible = true;
   bool has_parent = false;
 };
 
-glm::mat4 read_matrix(const JsonValue& json) {
-  const auto values = json.numbers("matrix", 16);
-  glm::mat4 matrix = glm::make_mat4(values->data());
+std::vector<std::uint32_t> to_indices(const std::vector<int>& indices) {
+  return {indices.begin(), indices.end()};
+}
+
+glm::mat4 to_matrix(const tinygltf::Node& document, const std::string& path) {
+  glm::mat4 matrix(glm::make_mat4(document.matrix.data()));
   const glm::vec4 last_row(matrix[0][3], matrix[1][3], matrix[2][3], matrix[3][3]);
   if (glm::distance(last_row, glm::vec4(0.0f, 0.0f, 0.0f, 1.0f)) > 1e-3f) {
-    json.refuse("matrix", "is not affine: its last row must be 0 0 0 1");
+    refuse_at(path, "matrix", "is not affine: its last row must be 0 0 0 1");
   }
   for (int column = 0; column < 4; ++column) matrix[column][3] = column == 3 ? 1.0f : 0.0f;
   return matrix;
 }
 
-Transform read_transform(const JsonValue& json) {
-  const auto translation = json.numbers<3>("translation", {0.0f, 0.0f, 0.0f});
-  const auto rotation = json.numbers<4>("rotation", {0.0f, 0.0f, 0.0f, 1.0f});
-  const auto scale = json.numbers<3>("scale", {1.0f, 1.0f, 1.0f});
-  const glm::dvec4 quaternion(rotation[0], rotation[1], rotation[2], rotation[3]);
+Transform to_transform(const tinygltf::Node& document, const std::string& path) {
+  Transform transform;
+  if (!document.translation.empty()) {
+    transform.translation = glm::make_vec3(document.translation.data());
+  }
+  if (!document.scale.empty()) transform.scale = glm::make_vec3(document.scale.data());
+  if (document.rotation.empty()) return transform;
+  const glm::dvec4 quaternion = glm::make_vec4(document.rotation.data());
   const double length = glm::length(quaternion);
-  if (length < 1e-6) json.refuse("rotation", "is not a quaternion of unit length");
-  const glm::quat unit(
-      static_cast<float>(quaternion.w / length), static_cast<float>(quaternion.x / length),
-      static_cast<float>(quaternion.y / length), static_cast<float>(quaternion.z / length));
-  return {{translation[0], translation[1], translation[2]}, unit, {scale[0], scale[1], scale[2]}};
+  if (length < 1e-6) refuse_at(path, "rotation", "is not a quaternion of unit length");
+  transform.rotation = glm::quat(glm::dquat(quaternion.w / length, quaternion.x / length,
+                                            quaternion.y / length, quaternion.z / length));
+  return transform;
+}
+
+/// The weights of an object at `path`, for a mesh with `count` morph targets.
+std::vector<float> to_weights(const std::vector<double>& given, std::size_t count,
+                              const std::string& path) {
+  if (given.size() != count) {
+    refuse_at(path, "weights", "must be an array of " + std::to_string(count) + " numbers");
+  }
+  return {given.begin(), given.end()};
 }
 
 /// Per mesh of the document: default weights of its morph targets, 0 unless given.
-std::vector<std::vector<float>> read_mesh_weights(const JsonValue& root) {
+std::vector<std::vector<float>> read_mesh_weights(const tinygltf::Model& model) {
   std::vector<std::vector<float>> weights;
-  for (const JsonValue& mesh : root.objects("meshes")) {
+  for (const tinygltf::Mesh& mesh : model.meshes) {
     std::size_t count = 0;
-    for (const JsonValue& primitive : mesh.objects("primitives")) {
-      count = std::max(count, primitive.objects("targets").size());
+    for (const tinygltf::Primitive& primitive : mesh.primitives) {
+      count = std::max(count, primitive.targets.size());
     }
-    auto given = count > 0 ? mesh.numbers("weights", count) : std::nullopt;
-    weights.push_back(given ? std::move(*given) : std::vector<float>(count, 0.0f));
+    const bool given = count > 0 && !mesh.weights.empty();
+    weights.push_back(given
+                          ? to_weights(mesh.weights, count, item_path("", "meshes", weights.size()))
+                          : std::vector<float>(count, 0.0f));
   }
   return weights;
 }
 
 struct Context {
   std::span<const Accessor> accessors;
-  std::size_t nodes;
   std::vector<std::vector<float>> mesh_weights;
-  std::size_t cameras;
-  std::size_t lights;
-  std::size_t skins;
   std::uint64_t instances;  // remaining budget of instances
 };
 
-DocumentNode read_node(const JsonValue& json, const Context& context) {
+DocumentNode read_node(const tinygltf::Node& document, std::string path, const Context& context) {
   DocumentNode result;
-  result.path = json.path();
-  result.node.name = json.text("name");
-  if (json.has("matrix")) {
-    result.node.local = read_matrix(json);
+  result.path = std::move(path);
+  result.node.name = document.name;
+  if (!document.matrix.empty()) {
+    result.node.local = to_matrix(document, result.path);
   } else {
-    result.node.transform = read_transform(json);
+    result.node.transform = to_transform(document, result.path);
     result.node.local = result.node.transform->matrix();
   }
-  result.children = json.indices("children", context.nodes, "nodes");
-  result.attachments.mesh = json.index("mesh", context.mesh_weights.size(), "meshes");
+  result.children = to_indices(document.children);
+  result.attachments.mesh = to_index(document.mesh);
   if (result.attachments.mesh) {
     const std::vector<float>& weights = context.mesh_weights[*result.attachments.mesh];
     result.node.weights = weights;
-    if (!weights.empty() && json.has("weights")) {
-      result.node.weights = *json.numbers("weights", weights.size());
+    if (!weights.empty() && !document.weights.empty()) {
+      result.node.weights = to_weights(document.weights, weights.size(), result.path);
     }
   }
-  result.attachments.camera = json.index("camera", context.cameras, "cameras");
-  result.attachments.skin = json.index("skin", context.skins, "skins");
-  result.attachments.light = read_node_light(json, context.lights);
-  const auto instance_transforms = read_instancing(json, context.accessors, context.instances);
+  result.attachments.camera = to_index(document.camera);
+  result.attachments.skin = to_index(document.skin);
+  result.attachments.light = read_node_light(document, result.path);
+  if (const auto own = find_extension(document.extensions, "KHR_node_visibility", result.path)) {
+    result.visible = own->boolean("visible", true);
+  }
+  auto instance_transforms =
+      read_instancing(document, result.path, context.accessors, context.instances);
   if (instance_transforms) {
     // Skinned vertices follow joints, not the node.
-    if (result.attachments.skin) json.refuse("skin", "cannot be instanced");
-    result.attachments.instance_transforms = *instance_transforms;
+    if (result.attachments.skin) refuse_at(result.path, "skin", "cannot be instanced");
+    result.attachments.instance_transforms = std::move(*instance_transforms);
   }
   return result;
 }
@@ -138,40 +156,61 @@ std::size_t visit_hierarchy(const std::vector<DocumentNode>& nodes,
   return visited;
 }
 
-// Every node has at most one parent, so nodes that no root reaches are on or below a cycle.
-void check_no_cycles(const std::vector<DocumentNode>& nodes, std::uint32_t max_depth) {
+std::vector<std::uint32_t> all_roots(const std::vector<DocumentNode>& nodes) {
   std::vector<std::uint32_t> roots;
   for (std::uint32_t i = 0; i < nodes.size(); ++i) {
     if (!nodes[i].has_parent) roots.push_back(i);
   }
+  return roots;
+}
+
+// Every node has at most one parent, so nodes that no root reaches are on or below a cycle.
+void check_no_cycles(const std::vector<DocumentNode>& nodes, std::uint32_t max_depth) {
   const auto ignore = [](std::uint32_t, std::optional<std::uint32_t>) {};
-  if (visit_hierarchy(nodes, roots, max_depth, ignore) != nodes.size()) {
+  if (visit_hierarchy(nodes, all_roots(nodes), max_depth, ignore) != nodes.size()) {
     throw ImportError("nodes: the hierarchy has a cycle");
   }
 }
 
-std::vector<std::uint32_t> read_roots(const JsonValue& root, const std::vector<DocumentNode>& nodes,
-                                      std::optional<std::uint32_t> shown) {
-  const std::vector<JsonValue> scenes = root.objects("scenes");
-  std::vector<std::vector<std::uint32_t>> roots_of_scene;
-  for (const JsonValue& scene : scenes) {
-    std::vector<std::uint32_t> roots = scene.indices("nodes", nodes.size(), "nodes");
-    std::vector<std::uint32_t> sorted = roots;
-    std::sort(sorted.begin(), sorted.end());
-    if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
-      scene.refuse("nodes", "lists a node twice");
-    }
-    for (const std::uint32_t node : roots) {
-      if (nodes[node].has_parent) scene.refuse("nodes", "lists a node that is not a root");
-    }
-    roots_of_scene.push_back(std::move(roots));
+/// The nodes that a scene lists, without those below others that it lists.
+std::vector<std::uint32_t> roots_of_scene(const tinygltf::Scene& scene, const std::string& path,
+                                          const std::vector<DocumentNode>& nodes,
+                                          std::uint32_t max_depth, Warnings& warnings) {
+  std::vector<std::uint32_t> roots = to_indices(scene.nodes);
+  std::vector<std::uint32_t> sorted = roots;
+  std::sort(sorted.begin(), sorted.end());
+  if (std::adjacent_find(sorted.begin(), sorted.end()) != sorted.end()) {
+    refuse_at(path, "nodes", "lists a node twice");
   }
-  if (shown) return roots_of_scene[*shown];
-  std::vector<std::uint32_t> all;
-  for (std::uint32_t i = 0; i < nodes.size(); ++i) {
-    if (!nodes[i].has_parent) all.push_back(i);
+  const auto has_parent = [&](std::uint32_t root) { return nodes[root].has_parent; };
+  if (std::ranges::none_of(roots, has_parent)) return roots;
+  std::vector<bool> below(nodes.size());
+  for (const std::uint32_t root : roots) {
+    if (below[root]) continue;
+    visit_hierarchy(nodes, {root}, max_depth,
+                    [&](std::uint32_t node, std::optional<std::uint32_t>) {
+                      below[node] = below[node] || node != root;
+                    });
   }
-  return all;
+  for (const std::uint32_t root : roots) {
+    if (below[root])
+      warnings.add(path + ".nodes lists " + nodes[root].path + ", which has a parent");
+  }
+  std::erase_if(roots, [&](std::uint32_t root) { return below[root]; });
+  return roots;
+}
+
+std::vector<std::uint32_t> read_roots(const tinygltf::Model& model,
+                                      const std::vector<DocumentNode>& nodes,
+                                      std::optional<std::uint32_t> shown, std::uint32_t max_depth,
+                                      Warnings& warnings) {
+  std::vector<std::uint32_t> shown_roots;
+  for (std::uint32_t i = 0; i < model.scenes.size(); ++i) {
+    auto roots =
+        roots_of_scene(model.scenes[i], item_path("", "scenes", i), nodes, max_depth, warnings);
+    if (shown == i) shown_roots = std::move(roots);
+  }
+  return shown ? shown_roots : all_roots(nodes);
 }
 
 /// Appends one child node per instance of EXT_mesh_gpu_instancing.
@@ -199,43 +238,40 @@ void add_places(NodeTable& table) {
 
 }  // namespace
 
-NodeTable read_nodes(const JsonValue& root, std::span<const Accessor> accessors,
-                     std::size_t light_count, std::optional<std::uint32_t> shown,
-                     const ImportLimits& limits) {
-  const std::vector<JsonValue> documents = root.objects("nodes");
-  if (documents.size() > limits.nodes) {
-    throw ImportError("nodes: " + std::to_string(documents.size()) + " exceed the limit of " +
+NodeTable read_nodes(const tinygltf::Model& model, std::span<const Accessor> accessors,
+                     std::optional<std::uint32_t> shown, const ImportLimits& limits,
+                     Warnings& warnings) {
+  if (model.nodes.size() > limits.nodes) {
+    throw ImportError("nodes: " + std::to_string(model.nodes.size()) + " exceed the limit of " +
                       std::to_string(limits.nodes));
   }
-  Context context{accessors,
-                  documents.size(),
-                  read_mesh_weights(root),
-                  root.objects("cameras").size(),
-                  light_count,
-                  root.objects("skins").size(),
-                  limits.instances};
+  Context context{accessors, read_mesh_weights(model), limits.instances};
   std::vector<DocumentNode> nodes;
-  nodes.reserve(documents.size());
+  nodes.reserve(model.nodes.size());
   std::uint64_t weights = 0;
-  for (const JsonValue& json : documents) {
-    nodes.push_back(read_node(json, context));
+  for (const tinygltf::Node& document : model.nodes) {
+    nodes.push_back(read_node(document, item_path("", "nodes", nodes.size()), context));
     context.instances -= nodes.back().attachments.instance_transforms.size();
     weights += nodes.back().node.weights.size();
-    if (weights > limits.json_values) json.refuse("has too many morph weights");
+    if (weights > limits.json_values) refuse_at(nodes.back().path, "has too many morph weights");
   }
   link_parents(nodes);
   check_no_cycles(nodes, limits.node_depth);
 
   NodeTable table;
   table.of_document.resize(nodes.size());
-  visit_hierarchy(nodes, read_roots(root, nodes, shown), limits.node_depth,
-                  [&](std::uint32_t index, std::optional<std::uint32_t> parent) {
+  std::vector<bool> visible;  // of the table's nodes
+  visit_hierarchy(nodes, read_roots(model, nodes, shown, limits.node_depth, warnings),
+                  limits.node_depth, [&](std::uint32_t index, std::optional<std::uint32_t> parent) {
                     Node node = nodes[index].node;
                     node.parent = parent;
                     node.world = parent ? table.nodes[*parent].world * node.local : node.local;
                     table.of_document[index] = static_cast<std::uint32_t>(table.nodes.size());
                     table.nodes.push_back(std::move(node));
-                    table.attachments.push_back(nodes[index].attachments);
+                    visible.push_back(nodes[index].visible && (!parent || visible[*parent]));
+                    NodeAttachments attachments = nodes[index].attachments;
+                    if (!visible.back()) attachments = {.camera = attachments.camera};
+                    table.attachments.push_back(std::move(attachments));
                     table.paths.push_back(nodes[index].path);
                   });
   add_places(table);

@@ -9,6 +9,7 @@
 #include "scene/gltf/document/gltf_file.hpp"
 #include "scene/gltf/nodes/lights.hpp"
 #include "scene/scene.hpp"
+#include "scene/warnings.hpp"
 
 namespace heliograph::scene {
 
@@ -33,10 +34,12 @@ struct NodeTable {
 };
 
 /// Reads all nodes, rejects cycles, second parents and excessive depth, and keeps those of scene
-/// `shown`, or all where there is none. A node with mesh instances gets one child per instance.
+/// `shown`, or all where there is none. A node that a scene lists although its parent is shown
+/// stays where its parent puts it. A node with mesh instances gets one child per instance. Nodes
+/// that are not visible, and those below them, keep their cameras only.
 /// @throws ImportError
-NodeTable read_nodes(const JsonValue& root, std::span<const Accessor> accessors,
-                     std::size_t light_count, std::optional<std::uint32_t> shown,
-                     const ImportLimits& limits);
+NodeTable read_nodes(const tinygltf::Model& model, std::span<const Accessor> accessors,
+                     std::optional<std::uint32_t> shown, const ImportLimits& limits,
+                     Warnings& warnings);
 
 }  // namespace heliograph::scene

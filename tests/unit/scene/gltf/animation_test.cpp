@@ -111,9 +111,9 @@ const Damage damages[] = {
     {"TimesThatDoNotAscend",
      [](auto& b) {
        b.json["animations"][0]["samplers"][0]["input"] =
-           b.add_accessor(Numbers{1, 1}, 5126, "SCALAR", 2);
+           b.add_accessor(Numbers{1, 0}, 5126, "SCALAR", 2);
      },
-     "must ascend strictly"},
+     "must ascend"},
     {"TimesBeforeTheStart",
      [](auto& b) {
        b.json["animations"][0]["samplers"][0]["input"] =

@@ -70,6 +70,7 @@ json& attributes_of(GltfBuilder& builder) {
 Mesh mesh_with(const char* name, const Component& component, std::size_t width,
                const Numbers& values) {
   GltfBuilder builder = triangle();
+  builder.json["extensionsUsed"] = {"KHR_mesh_quantization"};
   if (std::string_view(name) == "TANGENT") {
     attributes_of(builder)["NORMAL"] = add_values(builder, f32, 3, {0, 0, 1, 0, 0, 1, 0, 0, 1});
   }
@@ -248,6 +249,7 @@ TEST(Attributes, SparseIndicesOfEveryTypeReplaceAnyElementType) {
 TEST(Attributes, MorphTargetsOfEveryComponentTypeMoveNormalsAndTangents) {
   for (const Component& component : {f32, i8n, i16n}) {
     GltfBuilder builder = triangle();
+    builder.json["extensionsUsed"] = {"KHR_mesh_quantization"};
     attributes_of(builder)["NORMAL"] = add_values(builder, f32, 3, {0, 0, 1, 0, 0, 1, 0, 0, 1});
     attributes_of(builder)["TANGENT"] =
         add_values(builder, f32, 4, {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1});

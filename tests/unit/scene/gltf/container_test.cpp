@@ -149,7 +149,8 @@ class Confinement : public testing::Test {
 
   std::string refusal_of_uri(std::string_view uri) {
     const json document = {{"asset", {{"version", "2.0"}}},
-                           {"buffers", {{{"byteLength", 36}, {"uri", uri}}}}};
+                           {"buffers", {{{"byteLength", 36}, {"uri", uri}}}},
+                           {"bufferViews", {{{"buffer", 0}, {"byteLength", 36}}}}};
     return refusal_of(folder_.write("inside/scene.gltf", document.dump()));
   }
 

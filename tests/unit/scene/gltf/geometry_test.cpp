@@ -101,6 +101,7 @@ TEST(Geometry, InterleavedAttributesUseStride) {
 
 TEST(Geometry, NormalizedIntegersFollowSpecification) {
   GltfBuilder builder = triangle();
+  builder.json["extensionsUsed"] = {"KHR_mesh_quantization"};
   json& attributes = builder.json["meshes"][0]["primitives"][0]["attributes"];
   attributes["TEXCOORD_0"] = builder.add_accessor(
       builder.add_view(std::vector<std::uint8_t>{0, 255, 0, 0, 51, 0, 0, 0, 255, 255, 0, 0}, 4),

@@ -54,7 +54,6 @@ TEST_F(MalformedData, NumbersOutOfRange) {
   } cases[] = {
       {"/cameras/0/perspective/yfov", 0},
       {"/cameras/0/perspective/yfov", -1},
-      {"/cameras/0/perspective/yfov", 3.2},
       {"/cameras/0/perspective/znear", 0},
       {"/cameras/0/perspective/znear", -1},
       {"/cameras/0/perspective/zfar", 0.1},
@@ -233,9 +232,7 @@ TEST_F(MalformedData, InconsistentValues) {
   refuse_number("/meshes/1/primitives/0/attributes/WEIGHTS_0", 2, -1.0f);
   refuse_number("/meshes/0/primitives/0/attributes/POSITION", 0, 3e38f);
   refuse_number("/animations/0/samplers/0/input", 0, -1.0f);
-  refuse_number("/animations/0/samplers/0/input", 0, 1.0f);
   refuse_number("/animations/0/samplers/0/input", 0, 2.0f);
-  refuse_number("/animations/0/samplers/0/input", 1, 0.0f);
 }
 
 TEST_F(MalformedData, InvalidVertexIndices) {
@@ -309,7 +306,6 @@ TEST_F(MalformedData, CyclicAndSharedNodes) {
   doubling.add("nodes", json::object());
   expect_refused("doubling", doubling, "has more than one parent");
   refuse("/scenes/0/nodes", {0, 0}, "scenes[0].nodes");
-  refuse("/scenes/0/nodes", {0, 1}, "scenes[0].nodes");
   refuse("/nodes/0/children", {1, 1}, "nodes[1]: has more than one parent");
   refuse("/nodes/0/children", {0}, "cycle");
 }

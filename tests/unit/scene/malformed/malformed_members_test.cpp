@@ -113,7 +113,6 @@ const char* const required[] = {
     "/nodes/5/extras/areaLight/width",
     "/nodes/6/extensions/EXT_mesh_gpu_instancing/attributes",
     "/skins/0/joints",
-    "/textures/1/extensions/EXT_texture_webp/source",
     "/extensions/KHR_lights_punctual/lights/0/type",
 };
 
@@ -271,10 +270,11 @@ TEST_F(MalformedMembers, VectorsOfWrongSizeAndType) {
     huge[0] = 1e300;
     json nothing = good_.json[json::json_pointer(place)];
     nothing[0] = nullptr;
-    for (const json& value :
-         {json::array(), longer, text, huge, nothing, json(5), json("x"), json::object()}) {
+    for (const json& value : {longer, text, huge, nothing, json(5), json("x"), json::object()}) {
       refuse(place, value);
     }
+    // No weights are common for "the default ones".
+    if (!std::string_view(place).ends_with("/weights")) refuse(place, json::array());
   }
 }
 

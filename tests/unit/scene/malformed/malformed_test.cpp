@@ -20,6 +20,14 @@ void PrintTo(const Damage& damage, std::ostream* stream) {
   *stream << damage.name;
 }
 
+/// A buffer that a view refers to.
+std::uint32_t add_buffer(GltfBuilder& b, const json& buffer) {
+  const auto index = b.json["buffers"].size();
+  b.json["buffers"].push_back(buffer);
+  b.json["bufferViews"].push_back({{"buffer", index}, {"byteLength", 4}});
+  return static_cast<std::uint32_t>(index);
+}
+
 json& primitive(GltfBuilder& b) {
   return b.json["meshes"][0]["primitives"][0];
 }
@@ -45,7 +53,7 @@ const Damage damages[] = {
     {"AssetVersion1", [](auto& b) { b.json["asset"]["version"] = "1.0"; }, "asset.version"},
     {"AssetVersion3", [](auto& b) { b.json["asset"]["version"] = "3.0"; }, "asset.version"},
     {"AssetVersionNumber", [](auto& b) { b.json["asset"]["version"] = 2.0; }, "asset.version"},
-    {"AssetMinVersion", [](auto& b) { b.json["asset"]["minVersion"] = "2.7"; }, "asset.minVersion"},
+    {"AssetMinVersion", [](auto& b) { b.json["asset"]["minVersion"] = "3.0"; }, "asset.minVersion"},
     {"UnknownRequiredExtension",
      [](auto& b) {
        b.json["extensionsRequired"] = {"EXT_unknown", "KHR_lights_punctual"};
@@ -61,7 +69,7 @@ const Damage damages[] = {
      "is missing"},
     {"BufferWithoutData",
      [](auto& b) {
-       b.json["buffers"].push_back({{"byteLength", 4}});
+       add_buffer(b, {{"byteLength", 4}});
      },
      "buffers[1]"},
     {"ViewOfNoBuffer", [](auto& b) { b.json["bufferViews"][0]["buffer"] = 9; },
@@ -127,7 +135,7 @@ const Damage damages[] = {
     {"AttributeCounts", [](auto& b) { b.json["accessors"][1]["count"] = 3; }, "differs in count"},
     {"NoAttributes", [](auto& b) { primitive(b).erase("attributes"); }, "attributes"},
     {"NoPrimitives", [](auto& b) { b.json["meshes"][0]["primitives"] = json::array(); },
-     "no primitives"},
+     "primitives: must not be empty"},
     {"PrimitiveMode", [](auto& b) { primitive(b)["mode"] = 7; }, "mode"},
     {"MaterialOfNothing", [](auto& b) { primitive(b)["material"] = 1; },
      "1 is not an index into 1 materials"},
@@ -220,15 +228,10 @@ const Damage damages[] = {
        b.json["scenes"][0]["nodes"] = {0, 0};
      },
      "twice"},
-    {"SceneNodeNotRoot",
-     [](auto& b) {
-       b.json["scenes"][0]["nodes"] = {0, 1};
-     },
-     "not a root"},
 
     {"CameraType", [](auto& b) { b.json["cameras"][0]["type"] = "fisheye"; }, "cameras[0].type"},
     {"CameraWithoutLens", [](auto& b) { b.json["cameras"][0].erase("perspective"); }, "missing"},
-    {"CameraFov", [](auto& b) { b.json["cameras"][0]["perspective"]["yfov"] = 4; }, "yfov"},
+    {"CameraFov", [](auto& b) { b.json["cameras"][0]["perspective"]["yfov"] = 0; }, "yfov"},
     {"CameraNear", [](auto& b) { b.json["cameras"][0]["perspective"]["znear"] = 0; }, "znear"},
     {"LightType",
      [](auto& b) { b.json["extensions"]["KHR_lights_punctual"]["lights"][0]["type"] = "laser"; },
@@ -243,7 +246,7 @@ const Damage damages[] = {
      },
      "innerConeAngle"},
     {"SunAngle", [](auto& b) { b.json["nodes"][2]["extras"]["angularDiameterDeg"] = 360; },
-     "90 degrees"},
+     "must be from 0 to 90"},
 
     {"SkinJoint",
      [](auto& b) {
@@ -276,7 +279,7 @@ const Damage damages[] = {
      "images[0]"},
     {"ImageOtherFormat",
      [](auto& b) { b.json["images"][0]["bufferView"] = b.add_view(Bytes(100, 'x')); },
-     "neither PNG, JPEG nor WebP"},
+     "neither PNG, JPEG, WebP nor KTX2"},
     {"ImageWithoutSource", [](auto& b) { b.json["images"][0].erase("bufferView"); },
      "neither a uri"},
 };

@@ -74,8 +74,11 @@ Bytes jpeg(std::uint32_t width, std::uint32_t height, const Bytes& rgb, bool pro
 
 std::string base64(const Bytes& bytes);
 
+constexpr ImportLimits strict_limits = {.strict_assets = true};
+
 /// The import's error message, or "" when the file is accepted.
-std::string refusal_of(const std::filesystem::path& path, const ImportLimits& limits = {});
-std::string refusal_of(const GltfBuilder& builder, const ImportLimits& limits = {});
+std::string refusal_of(const std::filesystem::path& path,
+                       const ImportLimits& limits = strict_limits);
+std::string refusal_of(const GltfBuilder& builder, const ImportLimits& limits = strict_limits);
 
 }  // namespace heliograph::scene::test

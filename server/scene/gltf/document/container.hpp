@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scene/regular_file.hpp"
+
+namespace heliograph::scene {
+
+/// A .glb or .gltf file. Of a .glb only the headers and the document are read at once; its binary
+/// chunk is read straight into the buffer that uses it, so that there is no second copy.
+class Container {
+ public:
+  /// @throws ImportError
+  Container(const std::filesystem::path& path, std::uint64_t max_bytes);
+
+  /// The document's text, once.
+  std::string take_text() { return std::move(text_); }
+  bool has_binary() const { return binary_bytes_ != 0; }
+  std::uint64_t binary_bytes() const { return binary_bytes_; }
+  /// The first `bytes` of the binary chunk, which has as many. @throws ImportError
+  std::vector<std::uint8_t> read_binary(std::uint64_t bytes) const;
+
+ private:
+  void read_chunks();
+  std::string read_text(std::uint64_t offset, std::uint64_t bytes) const;
+  std::uint32_t read_word(std::uint64_t offset) const;
+
+  RegularFile file_;
+  std::string text_;
+  std::uint64_t binary_offset_ = 0;
+  std::uint64_t binary_bytes_ = 0;
+};
+
+}  // namespace heliograph::scene

@@ -1,0 +1,9 @@
+// The only source with tinygltf's code: without its image decoders, and without its access to
+// files. It does not include all that it uses, so that the order matters.
+// clang-format off
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#define TINYGLTF_IMPLEMENTATION
+#include <tiny_gltf.h>
+// clang-format on

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string_view>
+
+namespace heliograph::scene {
+
+/// Parses a glTF document after a pass over the bytes has checked that it nests no deeper than
+/// `max_depth` and has at most `max_values` values.
+/// @throws ImportError
+nlohmann::json parse_json(std::string_view text, std::uint32_t max_depth, std::uint64_t max_values);
+
+}  // namespace heliograph::scene

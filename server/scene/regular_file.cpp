@@ -1,0 +1,49 @@
+#include "scene/regular_file.hpp"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <utility>
+
+#include "scene/import_error.hpp"
+
+namespace heliograph::scene {
+
+// Non-blocking: opening a pipe must not wait for its writer before its type is checked.
+RegularFile::RegularFile(const std::filesystem::path& path, std::uint64_t max_bytes,
+                         std::string label)
+    : label_(std::move(label)),
+      descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
+  if (descriptor_ < 0) {
+    throw ImportError(label_ + (errno == ENOENT ? " does not exist" : " cannot be opened"));
+  }
+  const auto fail = [&](const char* reason) {
+    ::close(descriptor_);
+    throw ImportError(label_ + reason);
+  };
+  struct stat status {};
+  if (::fstat(descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
+    fail(" is not a regular file");
+  }
+  size_ = static_cast<std::uint64_t>(status.st_size);
+  if (size_ > max_bytes) fail(" exceeds the limit on the size of a scene's files");
+}
+
+RegularFile::~RegularFile() {
+  ::close(descriptor_);
+}
+
+void RegularFile::read(std::uint64_t offset, std::span<std::uint8_t> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t count =
+        ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) throw ImportError(label_ + " cannot be read completely");
+    bytes = bytes.subspan(static_cast<std::size_t>(count));
+    offset += static_cast<std::uint64_t>(count);
+  }
+}
+
+}  // namespace heliograph::scene
