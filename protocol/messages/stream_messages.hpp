@@ -22,6 +22,7 @@ struct StreamConfigure {
   std::optional<bool> paused;
   std::optional<StreamCodec> codec;
   std::optional<StillFormat> still;
+  std::optional<bool> depth;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -41,6 +42,9 @@ struct StreamConfigure {
         field("still", &StreamConfigure::still,
               "Format of the final image of a static view: JPEG without chroma subsampling, or "
               "lossless PNG."),
+        field("depth", &StreamConfigure::depth,
+              "Whether frames carry their camera and a coarse depth plane, from which the client "
+              "can show them from another camera."),
     };
   }
   bool operator==(const StreamConfigure&) const = default;
@@ -54,6 +58,7 @@ struct StreamState {
   bool paused = false;
   StreamCodec codec = StreamCodec::jpeg;
   StillFormat still = StillFormat::jpeg;
+  bool depth = false;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -65,6 +70,7 @@ struct StreamState {
         field("paused", &StreamState::paused, "Whether the stream is paused."),
         field("codec", &StreamState::codec, "Codec of moving frames."),
         field("still", &StreamState::still, "Format of the final image of a static view."),
+        field("depth", &StreamState::depth, "Whether frames carry their camera and depth."),
     };
   }
   bool operator==(const StreamState&) const = default;

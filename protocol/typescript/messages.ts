@@ -445,6 +445,11 @@ export interface SettingsPresetParams {
 export interface StreamConfigureParams {
   /** Codec of moving frames; one of those that hello returned. */
   codec?: "jpeg" | "h264";
+  /**
+   * Whether frames carry their camera and a coarse depth plane, from which the client can show them
+   * from another camera.
+   */
+  depth?: boolean;
   /** Frame height. [pixels] */
   height?: number;
   /** Maximum frame rate. */
@@ -465,6 +470,8 @@ export interface StreamConfigureParams {
 export interface StreamSettings {
   /** Codec of moving frames. */
   codec: "jpeg" | "h264";
+  /** Whether frames carry their camera and depth. */
+  depth: boolean;
   /** Frame height in effect. [pixels] */
   height: number;
   /** Maximum frame rate. */

@@ -158,14 +158,15 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
                                .max_fps = stream->max_fps,
                                .paused = stream->paused,
                                .codec = stream->codec,
-                               .still = stream->still};
+                               .still = stream->still,
+                               .depth = stream->depth};
 }
 
 /// A caller without a stream can change the size only.
 Result<ViewerStream> Session::configure_viewer(const protocol::StreamConfigure& request,
                                                const std::string& by) {
-  const bool only_size =
-      !request.quality && !request.max_fps && !request.paused && !request.codec && !request.still;
+  const bool only_size = !request.quality && !request.max_fps && !request.paused &&
+                         !request.codec && !request.still && !request.depth;
   if (by.empty() && only_size) return ViewerStream();
   return core_.viewers.configure(by, request);
 }

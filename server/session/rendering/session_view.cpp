@@ -199,10 +199,12 @@ bool SessionView::is_full_size() const {
 }
 
 /// A change and its reverse leave the image as it is, but the viewer that made them waits for a
-/// frame of the newest revision.
+/// frame of the newest revision, and the first viewer that wants depth for a frame with it.
 bool SessionView::needs_frame() const {
+  const bool lacks_depth = newest_ && !newest_->depth_read && session_->viewers().wants_depth();
   const bool outdated = newest_ && newest_->header.state_rev != state_.rev;
-  return renderer_ && (outdated || state_.animation.playing || renderer_->needs_frame());
+  return renderer_ &&
+         (outdated || lacks_depth || state_.animation.playing || renderer_->needs_frame());
 }
 
 ViewInputs SessionView::view_inputs() const {
@@ -307,6 +309,8 @@ std::shared_ptr<RenderedFrame> SessionView::describe(render::Frame frame, Clock:
   rendered->inputs = state_.inputs;
   rendered->discontinuities = discontinuities_;
   rendered->fps = static_cast<double>(frame_times_.size());
+  rendered->depth_read = session_->viewers().wants_depth();
+  if (rendered->depth_read) rendered->depth = renderer_->depth();
   return rendered;
 }
 

@@ -32,6 +32,7 @@ struct ViewerStream {
   bool decodes_video = false;  // agreed on in hello
   protocol::StreamCodec codec = protocol::StreamCodec::jpeg;
   protocol::StillFormat still = protocol::StillFormat::jpeg;
+  bool depth = false;
 };
 
 /// How to encode one frame.
@@ -96,6 +97,8 @@ class ViewerSet {
   bool has_other_participant(const std::string& viewer) const;
   /// Whether any viewer could be sent a frame that is rendered now.
   bool can_accept_frame() const;
+  /// Whether a viewer that is not paused asked for the depth of frames.
+  bool wants_depth() const;
   /// Whether any viewer is started and not paused.
   bool has_active_viewer() const;
   /// When the next viewer may be sent a frame again that only its rate limit holds back.

@@ -7,6 +7,8 @@ function observe() {
     /** The newest frame on the canvas, and the number of frames of each codec. */
     frame: null,
     drawn: {},
+    /** Number of images that were reprojected from the newest frame. */
+    predicted: 0,
     firstDrawnAt: null,
     /** Milliseconds from each frame's arrival to the canvas. */
     delays: [],
@@ -61,6 +63,7 @@ function observe() {
         if (this !== stream) return;
         const { kind, frame, text } = event.data;
         if (kind === "text") received(text);
+        if (kind === "predicted") seen.predicted += 1;
         if (kind !== "drawn" && kind !== "decoded") return;
         seen.frame = frame;
         seen.firstDrawnAt ??= frame.drawnAt;

@@ -131,6 +131,34 @@ class Library(ServerTestCase):
             with self.assertRaises(asyncio.TimeoutError):
                 view.next_frame(timeout=0.0)
 
+    def test_frames_carry_depth_where_it_was_requested(self):
+        with self.connect() as view:
+            view.stream.configure(width=320, height=184)
+            self.assertIsNone(view.next_frame().depth)
+            self.assertTrue(view.stream.configure(depth=True)["depth"])
+            frame = view.next_frame()
+            while not frame.depth:
+                frame = view.next_frame()
+            depth = frame.depth
+            self.assertEqual((depth.width, depth.height), (40, 23))
+            camera = view.camera.get()
+            numpy.testing.assert_allclose(depth.eye, camera["eye"], rtol=1e-6)
+            numpy.testing.assert_allclose(depth.target, camera["target"], atol=1e-6)
+            self.assertAlmostEqual(depth.vertical_fov, camera["vertical_fov"], places=4)
+            view_z = view.array("gbuffer.motion.view_z")
+            view_z = numpy.where(view_z > 0, view_z, numpy.inf)
+            surfaces = 0
+            for row in range(depth.height):
+                for column in range(depth.width):
+                    block = view_z[8 * row:8 * row + 8, 8 * column:8 * column + 8]
+                    sample = depth.view_z(column, row)
+                    # The samples of a frame lie elsewhere in their pixels.
+                    self.assertGreaterEqual(sample, 0.9 * block.min())
+                    self.assertLessEqual(sample, 1.1 * block.max())
+                    surfaces += sample < 1e6
+            self.assertGreater(surfaces, 100)
+            self.assertIsNotNone(frame._repr_jpeg_())
+
     def test_lockstep(self):
         with self.connect() as view:
             self.assertEqual(view.step(2, 0.1)["frames"], 2)

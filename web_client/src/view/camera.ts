@@ -1,8 +1,8 @@
 // Camera movements as pure functions: a pose in, a pose out. World space, metres, +Y up.
 
 import type { Vector3 } from "heliograph/json.ts";
-import type { CameraPose } from "../common/camera_pose.ts";
-import { add, cross, dot, length, normalize, scale, subtract } from "../common/vector.ts";
+import { type CameraPose, basis } from "../common/camera_pose.ts";
+import { add, dot, length, normalize, scale, subtract } from "../common/vector.ts";
 
 const worldUp: Vector3 = [0, 1, 0];
 
@@ -191,12 +191,4 @@ function headingOf(camera: CameraPose, offset: Vector3): number {
   // Seen from straight above or below, the camera's up vector gives the direction.
   const behind = scale(camera.up, offset[1] > 0 ? -1 : 1);
   return Math.atan2(behind[0], behind[2]);
-}
-
-function basis(camera: CameraPose): { rightward: Vector3; upward: Vector3; distance: number } {
-  const toTarget = subtract(camera.target, camera.eye);
-  const forward = normalize(toTarget);
-  let rightward = normalize(cross(forward, camera.up));
-  if (dot(rightward, rightward) === 0) rightward = [1, 0, 0];
-  return { rightward, upward: cross(rightward, forward), distance: length(toTarget) };
 }
