@@ -26,10 +26,11 @@ struct StreamConfigure {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("width", &StreamConfigure::width, "Frame width.")
+        field("width", &StreamConfigure::width,
+              "Frame width that suits this viewer; frames suit all viewers.")
             .range(min_frame_size, max_frame_size)
             .unit("pixels"),
-        field("height", &StreamConfigure::height, "Frame height.")
+        field("height", &StreamConfigure::height, "Frame height that suits this viewer.")
             .range(min_frame_size, max_frame_size)
             .unit("pixels"),
         field("quality", &StreamConfigure::quality, "Quality on the scale of JPEG, for any codec.")

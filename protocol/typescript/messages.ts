@@ -450,7 +450,7 @@ export interface StreamConfigureParams {
    * from another camera.
    */
   depth?: boolean;
-  /** Frame height. [pixels] */
+  /** Frame height that suits this viewer. [pixels] */
   height?: number;
   /** Maximum frame rate. */
   max_fps?: number;
@@ -462,7 +462,7 @@ export interface StreamConfigureParams {
    * Format of the final image of a static view: JPEG without chroma subsampling, or lossless PNG.
    */
   still?: "jpeg" | "png";
-  /** Frame width. [pixels] */
+  /** Frame width that suits this viewer; frames suit all viewers. [pixels] */
   width?: number;
 }
 

@@ -480,13 +480,13 @@ class Stream(_Group):
         codec: Codec of moving frames; one of those that hello returned.
         depth: Whether frames carry their camera and a coarse depth plane, from which the client
             can show them from another camera.
-        height: Frame height. [pixels]
+        height: Frame height that suits this viewer. [pixels]
         max_fps: Maximum frame rate.
         paused: Whether the stream is paused.
         quality: Quality on the scale of JPEG, for any codec.
         still: Format of the final image of a static view: JPEG without chroma subsampling, or
             lossless PNG.
-        width: Frame width. [pixels]
+        width: Frame width that suits this viewer; frames suit all viewers. [pixels]
 
         Returns: codec, depth, height, max_fps, paused, quality, still, width.
         """

@@ -12,6 +12,7 @@
 
 #include "protocol/messages/messages.hpp"
 #include "protocol/result.hpp"
+#include "session/viewers/common_size.hpp"
 #include "session/viewers/control.hpp"
 #include "session/viewers/frame_purpose.hpp"
 #include "session/viewers/viewer_link.hpp"
@@ -84,6 +85,10 @@ class ViewerSet {
 
   protocol::Result<ViewerStream> configure(const std::string& viewer,
                                            const protocol::StreamConfigure& change);
+  /// The frame size that suits the viewer's window.
+  void want_size(const std::string& viewer, FrameSize size);
+  /// Those of all viewers that have told, but for one.
+  std::vector<FrameSize> wanted_sizes(const std::string& except = {}) const;
   protocol::Result<void> acknowledge(const std::string& viewer, const protocol::StreamAck& ack);
   protocol::Result<void> subscribe(const std::string& viewer, std::chrono::milliseconds interval);
   /// Since when the oldest frame in flight to this viewer waits for its acknowledgement.
@@ -130,6 +135,7 @@ class ViewerSet {
     std::optional<std::string> name;
     stream::ViewerPacer pacer;
     ViewerStream stream;
+    std::optional<FrameSize> wanted;
     bool started = false;
     bool discontinuous = false;         // its next frame does not continue the last one
     std::uint64_t discontinuities = 0;  // of the last frame that it took

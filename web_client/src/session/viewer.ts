@@ -75,6 +75,8 @@ export class Viewer {
   readonly rates = new RateMeter();
   /** Of all images that are shown. */
   readonly shownRates = new RateMeter();
+  /** Where a point of the view lies in the frame, both in fractions of width and height. */
+  inFrame: (x: number, y: number) => { x: number; y: number } = (x, y) => ({ x, y });
   /** Shows an error as one sentence. */
   onError: (message: string) => void = () => {};
   /** Shows why a scene file was not loaded. */
@@ -87,6 +89,8 @@ export class Viewer {
   addBookmark: () => void = () => {};
   private animationReadAt = 0;
   private animationRev = 0;
+  /** Of the newest camera that a reprojected image has shown. */
+  private predictedSeq = 0;
   /** From the arrival of the server's hello until the connection is lost. */
   private receivedHello: Hello | null = null;
   /** The state that is still to be restored; it survives lost connections. */
@@ -107,6 +111,7 @@ export class Viewer {
       drawn: (frame) => this.frameDrawn(frame),
       draw: (image, frame) => painter?.draw(image, frame.width, frame.height),
       predicted: (seq, drawnAt) => {
+        this.predictedSeq = seq;
         this.shownRates.add(drawnAt, 0);
         this.responses.frameDrawn(seq, drawnAt);
       },
@@ -165,6 +170,7 @@ export class Viewer {
       rpc: this.rpc,
       capabilities: this.capabilities,
       buffer: () => String(this.settings.value(bufferSetting) ?? "output"),
+      inFrame: (x, y) => this.inFrame(x, y),
       report: (error) => this.report(error),
     });
     this.sessionRestore = new SessionRestore({
@@ -283,6 +289,7 @@ export class Viewer {
     this.receivedHello = hello;
     this.latency.reset();
     this.responses.reset();
+    this.predictedSeq = 0;
     this.cameraMoves.reset();
     this.animationRev = 0;
     await this.readSession();
@@ -373,6 +380,7 @@ export class Viewer {
     const viewers = session.viewers.map((viewer) => ({ ...viewer, you: viewer.viewer === own }));
     this.session.set({ ...session, viewers });
     this.controlState.set(controlStateOf(this.session.value, this.receivedHello?.role));
+    if (!this.mayChange) this.connection.predict(null);
     this.stream.onFrameSize(session);
     this.stream.updateSize();
   }
@@ -388,7 +396,8 @@ export class Viewer {
 
   private frameDrawn(frame: DrawnFrame): void {
     this.rates.add(frame.drawnAt, frame.bytes);
-    this.shownRates.add(frame.drawnAt, 0);
+    // Frames that are behind the camera have been counted as they were reprojected.
+    if (frame.inputSeqEcho >= this.predictedSeq) this.shownRates.add(frame.drawnAt, 0);
     this.latency.frameDrawn(frame.inputSeqEcho, frame.drawnAt);
     this.responses.frameDrawn(frame.inputSeqEcho, frame.drawnAt);
     if (frame.codec === Codec.h264) this.stream.onVideoFrame();
