@@ -260,11 +260,15 @@ void SessionView::begin_frame(double seconds) {
   if (state_.animation.playing) adopt_pose();
   renderer_->set_frame_seconds(static_cast<float>(seconds));
   const Clock::time_point before = std::exchange(frame_began_at_, start);
-  // A viewer that moves the camera does not wait for a sample of the view that it leaves.
+  // A viewer that moves the camera does not wait for a frame of the view that it leaves.
   const ViewState view_state = next_view_state(view_inputs());
-  const bool refining = view_state == ViewState::refining;
-  const bool began =
-      renderer_->begin([&] { return refining && session_->version() != state_.version; });
+  const Interruption by = interruption(view_inputs());
+  const bool began = renderer_->begin([&] {
+    if (by == Interruption::none) return false;
+    const bool changed = session_->version() != state_.version;
+    return changed &&
+           (by == Interruption::any_change || session_->camera().moves() != state_.camera_moves);
+  });
   if (began) {
     begun_ = {view_state, start};
   } else {
