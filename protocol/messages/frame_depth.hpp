@@ -11,7 +11,7 @@
 namespace heliograph::protocol {
 
 /// Samples of a depth plane, at most: it lies in the header, whose length has 16 bits.
-inline constexpr std::size_t max_depth_samples = 16384;
+inline constexpr std::size_t max_depth_samples = 24576;
 
 /// The camera of a frame and where its surfaces are, coarsely: what a client needs to show the
 /// frame from another camera until the next one comes. It follows the frame header of viewers that

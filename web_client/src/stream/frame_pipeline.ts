@@ -66,7 +66,7 @@ export class FramePipeline {
       return;
     }
     const depth = readFrameDepth(message, header);
-    depth.catch(() => {}); // whoever shows the frame finds out
+    depth.catch(() => {}); // PredictedView handles it, if it shows the frame
     const frame = { header, message, receivedAt: clockMs(), depth };
     if (header.codec === Codec.h264) {
       this.video.push(frame);

@@ -7,6 +7,13 @@ import type { CanvasPainter } from "./canvas_painter.ts";
 import { Reprojection } from "./reprojection.ts";
 import type { DrawnFrame, PredictedCamera } from "./worker_messages.ts";
 
+/** A camera that no frame shows for so long has been refused by the server. */
+const refusedAfterMs = 10_000;
+
+const shortDrawMs = 8;
+const slowDrawMs = 20;
+const longestRestMs = 100;
+
 type ShownFrame = Pick<DrawnFrame, "inputSeqEcho" | "width" | "height">;
 
 interface PredictedViewEvents {
@@ -21,6 +28,11 @@ export class PredictedView {
   private readonly events: PredictedViewEvents;
   private reprojection: Reprojection | null = null;
   private camera: PredictedCamera | null = null;
+  private predictedAt = 0;
+  private scheduled = false;
+  private restMs = 0;
+  /** Whether frames are reprojected coarsely from the next one on. */
+  private coarse = false;
   private newest: ShownFrame | null = null;
   /** The frame on the canvas, with its depth as soon as that is read. */
   private placed: ShownFrame | null = null;
@@ -62,7 +74,9 @@ export class PredictedView {
   /** The page has moved the camera; null: it was moved by others, so nothing is known. */
   predict(camera: PredictedCamera | null): void {
     this.camera = camera;
-    this.redraw();
+    this.predictedAt = performance.now();
+    if (camera) this.schedule();
+    else this.redraw();
   }
 
   /** A copy of the newest frame as the server sent it; null before the first. */
@@ -75,7 +89,8 @@ export class PredictedView {
   }
 
   private isAheadOf(frame: ShownFrame): boolean {
-    return this.camera !== null && frame.inputSeqEcho < this.camera.seq;
+    const current = performance.now() - this.predictedAt < refusedAfterMs;
+    return this.camera !== null && current && frame.inputSeqEcho < this.camera.seq;
   }
 
   private place(image: ImageBitmap | VideoFrame, frame: ShownFrame): void {
@@ -86,12 +101,36 @@ export class PredictedView {
     this.reprojected = false;
   }
 
+  /**
+   * Of several cameras between two images of the screen the newest is drawn. Where drawing takes
+   * long, half of the time is left to the frames, and to a server on the same processor.
+   */
+  private schedule(): void {
+    if (this.scheduled) return;
+    this.scheduled = true;
+    const run = (): void => {
+      this.scheduled = false;
+      const start = performance.now();
+      this.redraw();
+      const drawMs = performance.now() - start;
+      this.restMs = Math.min(longestRestMs, drawMs);
+      // A coarse image takes about a fifth of the time.
+      this.coarse = drawMs > slowDrawMs || (this.coarse && drawMs > slowDrawMs / 8);
+    };
+    const next = (): void => {
+      if (typeof requestAnimationFrame === "function") requestAnimationFrame(run);
+      else run();
+    };
+    if (this.restMs > shortDrawMs) setTimeout(next, this.restMs);
+    else next();
+  }
+
   private redraw(): void {
     const { camera, placed, depth } = this;
     if (!placed || !depth) return;
     if (camera && this.isAheadOf(placed)) {
       if (!this.prepare()) return;
-      if (!this.taken) this.reprojection?.take(this.painter.canvas, depth);
+      if (!this.taken) this.reprojection?.take(this.painter.canvas, depth, this.coarse);
       this.taken = true;
       this.reprojected = true;
       this.overlay(camera);

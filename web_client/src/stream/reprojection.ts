@@ -1,7 +1,7 @@
 // Shows a frame from another camera: a mesh through its depth plane, which has a vertex at each
 // corner of the plane's samples, is textured with the frame and drawn from the new camera. Where
-// surfaces come into view that the frame does not show, the mesh stretches the background; beyond
-// its border it mirrors the frame.
+// surfaces come into view that the frame does not show, the mesh stretches the background, and
+// beyond its border it goes on, more and more blurred.
 
 import type { Vector3 } from "heliograph/json.ts";
 import type { FrameDepth } from "heliograph/frame_depth.ts";
@@ -12,9 +12,9 @@ export type ViewCamera = Pick<CameraPose, "eye" | "target" | "up" | "vertical_fo
 
 const vertexSource = `#version 300 es
 precision highp float;
-precision highp usampler2D;
-uniform usampler2D plane;
-uniform float inverseNearest; // of the plane's values, 1 / metres
+layout(location = 0) in float inverseDepth; // of a corner of samples, as a part of the nearest
+uniform ivec2 size;           // of the plane
+uniform float inverseNearest; // 1 / metres
 uniform vec2 tangents;        // of half the frame's angles
 uniform vec2 newTangents;
 uniform mat3 turn;            // from the frame's view to the new one
@@ -22,29 +22,13 @@ uniform vec3 shift;           // of the eye, metres, in the new view
 uniform float nearPlane;      // metres
 out vec2 at;
 
-// Of a corner of samples: where they show an edge, the nearest counts, so that what is in front
-// keeps its shape.
-float inverseDepth(ivec2 corner, ivec2 size) {
-  float least = 65535.0, most = 0.0, sum = 0.0;
-  for (int i = 0; i < 4; ++i) {
-    ivec2 texel = clamp(corner - ivec2(i & 1, i >> 1), ivec2(0), size - 1);
-    float value = float(texelFetch(plane, texel, 0).r);
-    least = min(least, value);
-    most = max(most, value);
-    sum += value;
-  }
-  float value = most - least > 0.1 * most ? most : 0.25 * sum;
-  return value / 65535.0 * inverseNearest;
-}
-
 void main() {
-  ivec2 size = textureSize(plane, 0);
   int columns = size.x + 3; // one vertex more at each side, beyond the border
   ivec2 corner = ivec2(gl_VertexID % columns, gl_VertexID / columns) - 1;
-  float inverse = inverseDepth(corner, size);
   at = vec2(corner) / vec2(size);
   at = mix(at, vec2(-1.0), lessThan(corner, ivec2(0)));
   at = mix(at, vec2(2.0), greaterThan(corner, size));
+  float inverse = inverseDepth * inverseNearest;
   vec3 ray = vec3((2.0 * at.x - 1.0) * tangents.x, (1.0 - 2.0 * at.y) * tangents.y, 1.0);
   vec3 seen = turn * ray - shift * inverse;
   float z = seen.z - 2.0 * nearPlane * inverse;
@@ -56,10 +40,16 @@ precision highp float;
 uniform sampler2D frame;
 in vec2 at;
 out vec4 color;
+
+// Beyond the border the frame goes on, the more blurred the farther away.
 void main() {
-  color = vec4(texture(frame, at).rgb, 1.0);
+  vec2 inside = clamp(at, 0.0, 1.0);
+  float pixels = length((at - inside) * vec2(textureSize(frame, 0)));
+  color = vec4(textureLod(frame, inside, log2(1.0 + 0.5 * pixels)).rgb, 1.0);
 }`;
 
+/** Samples that are farther apart than this part of the nearer one show an edge. */
+const edge = 0.04;
 /** Distances below this part of the nearest sample's are clipped. */
 const nearestShare = 0.05;
 
@@ -72,6 +62,7 @@ export class Reprojection {
   private readonly gl: WebGL2RenderingContext;
   private readonly uniforms: Uniforms = {};
   private source: FrameDepth | null = null;
+  private aspect = 1;
   private meshSize = "";
   private indexCount = 0;
 
@@ -87,14 +78,15 @@ export class Reprojection {
     this.gl = gl;
     const program = linkProgram(gl);
     gl.useProgram(program);
-    const names = "plane frame inverseNearest tangents newTangents turn shift nearPlane";
+    const names = "size frame inverseNearest tangents newTangents turn shift nearPlane";
     for (const name of names.split(" ")) this.uniforms[name] = gl.getUniformLocation(program, name);
     gl.uniform1i(this.uniforms.frame!, 0);
-    gl.uniform1i(this.uniforms.plane!, 1);
-    makeTexture(gl, gl.TEXTURE0, gl.LINEAR, gl.MIRRORED_REPEAT);
-    makeTexture(gl, gl.TEXTURE1, gl.NEAREST, gl.CLAMP_TO_EDGE);
+    makeTexture(gl);
     gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
     gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, gl.createBuffer());
+    gl.bindBuffer(gl.ARRAY_BUFFER, gl.createBuffer());
+    gl.enableVertexAttribArray(0);
+    gl.vertexAttribPointer(0, 1, gl.UNSIGNED_SHORT, true, 0, 0);
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL); // the background lies at the far end
   }
@@ -104,27 +96,30 @@ export class Reprojection {
     return !this.gl.isContextLost();
   }
 
-  /** Takes the frame that the canvas shows. */
-  take(frame: HTMLCanvasElement | OffscreenCanvas, depth: FrameDepth): void {
+  /**
+   * Takes the frame that `shown` shows. `coarse`: for slow devices, in half the size and with a
+   * quarter of the triangles.
+   */
+  take(shown: HTMLCanvasElement | OffscreenCanvas, frameDepth: FrameDepth, coarse: boolean): void {
     const { gl } = this;
+    const depth = coarse ? halved(frameDepth) : frameDepth;
     this.source = depth;
-    if (this.canvas.width !== frame.width) this.canvas.width = frame.width;
-    if (this.canvas.height !== frame.height) this.canvas.height = frame.height;
-    gl.activeTexture(gl.TEXTURE0);
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, frame);
-    gl.activeTexture(gl.TEXTURE1);
-    gl.pixelStorei(gl.UNPACK_ALIGNMENT, 2);
-    const { width, height, samples } = depth;
-    const [format, type] = [gl.RED_INTEGER, gl.UNSIGNED_SHORT];
-    gl.texImage2D(gl.TEXTURE_2D, 0, gl.R16UI, width, height, 0, format, type, samples);
-    this.makeMesh(width, height);
+    const scale = coarse ? 0.5 : 1;
+    const [width, height] = [Math.ceil(scale * shown.width), Math.ceil(scale * shown.height)];
+    if (this.canvas.width !== width) this.canvas.width = width;
+    if (this.canvas.height !== height) this.canvas.height = height;
+    this.aspect = shown.width / shown.height;
+    gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA, gl.RGBA, gl.UNSIGNED_BYTE, shown);
+    gl.generateMipmap(gl.TEXTURE_2D);
+    gl.uniform2i(this.uniforms.size!, depth.width, depth.height);
+    gl.bufferData(gl.ARRAY_BUFFER, cornersOf(depth), gl.DYNAMIC_DRAW);
+    this.makeMesh(depth.width, depth.height);
   }
 
   /** Draws that frame on `canvas`, from another camera or as it is. */
   draw(seenFrom?: ViewCamera): void {
-    const { gl, source, uniforms, canvas } = this;
+    const { gl, source, uniforms, canvas, aspect } = this;
     if (!source) return;
-    const aspect = canvas.width / canvas.height;
     const from: ViewCamera = { ...source, vertical_fov: source.verticalFov };
     const camera = seenFrom ?? from;
     const [axes, newAxes] = [axesOf(from), axesOf(camera)];
@@ -187,11 +182,48 @@ function linkProgram(gl: WebGL2RenderingContext): WebGLProgram {
   return program;
 }
 
-function makeTexture(gl: WebGL2RenderingContext, unit: number, filter: number, wrap: number): void {
-  gl.activeTexture(unit);
+function makeTexture(gl: WebGL2RenderingContext): void {
   gl.bindTexture(gl.TEXTURE_2D, gl.createTexture());
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, filter);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, filter);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, wrap);
-  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, wrap);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MIN_FILTER, gl.LINEAR_MIPMAP_LINEAR);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_S, gl.CLAMP_TO_EDGE);
+  gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_WRAP_T, gl.CLAMP_TO_EDGE);
+}
+
+/** Four samples become one. */
+function merged(a: number, b: number, c: number, d: number): number {
+  const most = Math.max(a, b, c, d);
+  const isEdge = most - Math.min(a, b, c, d) > edge * most;
+  return isEdge ? most : (a + b + c + d) >> 2;
+}
+
+/** The samples at these places, those beyond the border being the nearest within it. */
+function mergedAt(depth: FrameDepth, x: number, y: number): number {
+  const { width, height, samples } = depth;
+  const inside = (value: number, size: number): number => Math.min(size - 1, Math.max(0, value));
+  const [left, right] = [inside(x, width), inside(x + 1, width)];
+  const [above, below] = [inside(y, height) * width, inside(y + 1, height) * width];
+  const [a, b] = [samples[above + left]!, samples[above + right]!];
+  return merged(a, b, samples[below + left]!, samples[below + right]!);
+}
+
+function halved(depth: FrameDepth): FrameDepth {
+  const [width, height] = [(depth.width + 1) >> 1, (depth.height + 1) >> 1];
+  const samples = new Uint16Array(width * height);
+  for (let i = 0; i < samples.length; i += 1) {
+    samples[i] = mergedAt(depth, 2 * (i % width), 2 * Math.floor(i / width));
+  }
+  return { ...depth, width, height, samples };
+}
+
+/**
+ * The mesh's vertices: corners of samples, and beyond the border copies of it. Where the samples
+ * around a corner show an edge, the nearest counts, so that what is in front keeps its shape.
+ */
+function cornersOf(depth: FrameDepth): Uint16Array<ArrayBuffer> {
+  const columns = depth.width + 3;
+  const corners = new Uint16Array(columns * (depth.height + 3));
+  for (let i = 0; i < corners.length; i += 1) {
+    corners[i] = mergedAt(depth, (i % columns) - 2, Math.floor(i / columns) - 2);
+  }
+  return corners;
 }

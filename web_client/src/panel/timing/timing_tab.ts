@@ -54,7 +54,7 @@ export function createTimingTab(viewer: Viewer, streamFields: HTMLElement): HTML
     setText(size.value, frame ? `${frame.width} × ${frame.height}` : "–");
     setText(samples.value, frame ? String(frame.samples) : "–");
     setText(quality.value, frame ? String(frame.quality) : "–");
-    setText(scale.value, frame ? `${Math.round(100 * shownScale(frame.width))} %` : "–");
+    setText(scale.value, frame ? `${Math.round(100 * shownScale(frame))} %` : "–");
     setText(decode.value, frame ? `${frame.decodeMs.toFixed(1)} ms` : "–");
   };
   setInterval(refresh, refreshMs);
@@ -83,9 +83,9 @@ export function createTimingTab(viewer: Viewer, streamFields: HTMLElement): HTML
   );
 }
 
-/** Sent pixels per device pixel, along the width of the view. */
-function shownScale(width: number): number {
-  return width / Math.max(1, innerWidth * devicePixelRatio);
+/** Sent pixels per device pixel; the frame covers the view. */
+function shownScale({ width, height }: { width: number; height: number }): number {
+  return Math.min(width / innerWidth, height / innerHeight) / devicePixelRatio;
 }
 
 function figure(label: string, help: string): { node: HTMLElement; value: HTMLElement } {
