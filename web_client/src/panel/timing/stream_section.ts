@@ -57,7 +57,7 @@ export function createStreamSection(viewer: Viewer): {
     field("Resolution", sizes),
     field("Quality", qualityPicker(viewer)),
     codecField(viewer),
-    field("Follow the pointer", reprojectionBox(viewer)),
+    field("Smooth motion", reprojectionSwitch(viewer)),
   );
   return { node, resolution };
 }
@@ -86,9 +86,11 @@ function qualityPicker(viewer: Viewer): HTMLSelectElement {
   return select;
 }
 
-function reprojectionBox(viewer: Viewer): HTMLInputElement {
+function reprojectionSwitch(viewer: Viewer): HTMLInputElement {
   const box = element("input", {
     type: "checkbox",
+    role: "switch",
+    class: "switch",
     name: "reprojection",
     "data-tip": "Between frames of the server, the last one is shown from the new camera.",
     change: () => {
