@@ -27,6 +27,7 @@ inline constexpr std::uint8_t key = 1;               ///< decodable without earl
 inline constexpr std::uint8_t final = 2;             ///< no better frame of this state follows
 inline constexpr std::uint8_t first_after_drop = 4;  ///< earlier frames were dropped
 inline constexpr std::uint8_t discontinuity = 8;     ///< camera jump, resize or new scene
+inline constexpr std::uint8_t depth = 16;            ///< a FrameDepth follows the header
 }  // namespace frame_flag
 
 inline constexpr std::size_t frame_header_bytes = 64;

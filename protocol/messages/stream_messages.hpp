@@ -22,13 +22,15 @@ struct StreamConfigure {
   std::optional<bool> paused;
   std::optional<StreamCodec> codec;
   std::optional<StillFormat> still;
+  std::optional<bool> depth;
 
   static constexpr auto fields() {
     return std::tuple{
-        field("width", &StreamConfigure::width, "Frame width.")
+        field("width", &StreamConfigure::width,
+              "Frame width that suits this viewer; frames suit all viewers.")
             .range(min_frame_size, max_frame_size)
             .unit("pixels"),
-        field("height", &StreamConfigure::height, "Frame height.")
+        field("height", &StreamConfigure::height, "Frame height that suits this viewer.")
             .range(min_frame_size, max_frame_size)
             .unit("pixels"),
         field("quality", &StreamConfigure::quality, "Quality on the scale of JPEG, for any codec.")
@@ -41,6 +43,9 @@ struct StreamConfigure {
         field("still", &StreamConfigure::still,
               "Format of the final image of a static view: JPEG without chroma subsampling, or "
               "lossless PNG."),
+        field("depth", &StreamConfigure::depth,
+              "Whether frames carry their camera and a coarse depth plane, from which the client "
+              "can show them from another camera."),
     };
   }
   bool operator==(const StreamConfigure&) const = default;
@@ -54,6 +59,7 @@ struct StreamState {
   bool paused = false;
   StreamCodec codec = StreamCodec::jpeg;
   StillFormat still = StillFormat::jpeg;
+  bool depth = false;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -65,6 +71,7 @@ struct StreamState {
         field("paused", &StreamState::paused, "Whether the stream is paused."),
         field("codec", &StreamState::codec, "Codec of moving frames."),
         field("still", &StreamState::still, "Format of the final image of a static view."),
+        field("depth", &StreamState::depth, "Whether frames carry their camera and depth."),
     };
   }
   bool operator==(const StreamState&) const = default;

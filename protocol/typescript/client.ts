@@ -1,6 +1,7 @@
 // A client for programs and pages that need no worker: connects, sends hello, delivers frames and
 // acknowledges them. Needs a WebSocket class: browsers and Node 22 or later have one.
 
+import { type FrameDepth, readFrameDepth } from "./frame_depth.ts";
 import { type FrameHeader, parseFrameHeader } from "./frame_header.ts";
 import {
   type Hello,
@@ -28,9 +29,13 @@ export interface ClientOptions {
   /**
    * Receives each encoded frame. The frame is acknowledged when the function has returned or
    * failed; after 10 s without acknowledgement the server disconnects. If left out, the stream is
-   * paused.
+   * paused. `depth` is null unless it was requested with configureStream.
    */
-  frame?: (header: FrameHeader, payload: Uint8Array<ArrayBuffer>) => void | Promise<void>;
+  frame?: (
+    header: FrameHeader,
+    payload: Uint8Array<ArrayBuffer>,
+    depth: FrameDepth | null,
+  ) => void | Promise<void>;
   notification?: (method: string, params: unknown) => void | Promise<void>;
   /** The connection was closed, by the server or the client. */
   closed?: (code: number, reason: string) => void;
@@ -147,7 +152,8 @@ async function receiveFrame(
 ): Promise<void> {
   const header = parseFrameHeader(message);
   try {
-    await options.frame?.(header, new Uint8Array(message, header.headerBytes));
+    const depth = await readFrameDepth(message, header);
+    await options.frame?.(header, new Uint8Array(message, header.headerBytes), depth);
   } finally {
     peer.notify("stream.ack", { frame_seq: header.frameSeq });
   }

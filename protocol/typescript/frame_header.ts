@@ -5,7 +5,7 @@ const minimumHeaderBytes = 64;
 const supportedVersion = 1;
 
 export const Codec = { jpeg: 1, png: 2, webp: 3, h264: 16 } as const;
-export const FrameFlag = { key: 1, final: 2, afterDrop: 4, discontinuity: 8 } as const;
+export const FrameFlag = { key: 1, final: 2, afterDrop: 4, discontinuity: 8, depth: 16 } as const;
 
 export interface FrameHeader {
   type: number;

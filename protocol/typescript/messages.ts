@@ -445,7 +445,12 @@ export interface SettingsPresetParams {
 export interface StreamConfigureParams {
   /** Codec of moving frames; one of those that hello returned. */
   codec?: "jpeg" | "h264";
-  /** Frame height. [pixels] */
+  /**
+   * Whether frames carry their camera and a coarse depth plane, from which the client can show them
+   * from another camera.
+   */
+  depth?: boolean;
+  /** Frame height that suits this viewer. [pixels] */
   height?: number;
   /** Maximum frame rate. */
   max_fps?: number;
@@ -457,7 +462,7 @@ export interface StreamConfigureParams {
    * Format of the final image of a static view: JPEG without chroma subsampling, or lossless PNG.
    */
   still?: "jpeg" | "png";
-  /** Frame width. [pixels] */
+  /** Frame width that suits this viewer; frames suit all viewers. [pixels] */
   width?: number;
 }
 
@@ -465,6 +470,8 @@ export interface StreamConfigureParams {
 export interface StreamSettings {
   /** Codec of moving frames. */
   codec: "jpeg" | "h264";
+  /** Whether frames carry their camera and depth. */
+  depth: boolean;
   /** Frame height in effect. [pixels] */
   height: number;
   /** Maximum frame rate. */

@@ -129,17 +129,21 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
                                                         const std::string& by, bool read_only) {
   const std::lock_guard lock(core_.mutex);
   const SessionLimits& limits = core_.options.limits;
-  const std::uint32_t width = std::min(request.width.value_or(core_.width), limits.max_width);
-  const std::uint32_t height = std::min(request.height.value_or(core_.height), limits.max_height);
-  const bool resized = width != core_.width || height != core_.height;
-  if (resized && read_only) {
-    return error::make(protocol::ErrorCode::forbidden, width != core_.width ? "width" : "height",
+  const FrameSize asked{std::min(request.width.value_or(core_.width), limits.max_width),
+                        std::min(request.height.value_or(core_.height), limits.max_height)};
+  const bool sized = request.width || request.height;
+  const bool other = asked != FrameSize{core_.width, core_.height};
+  if (other && read_only) {
+    return error::make(protocol::ErrorCode::forbidden,
+                       asked.width != core_.width ? "width" : "height",
                        "is shared by all viewers and cannot be changed with a read-only token");
   }
-  if (resized && !core_.viewers.may_change(by)) return no_control(core_.viewers);
+  if (other && !core_.viewers.may_change(by)) return no_control(core_.viewers);
+  const bool wants = sized && !by.empty() && !read_only && core_.viewers.may_change(by);
+  const FrameSize size = wants ? size_for(core_.viewers.wanted_sizes(by), asked) : asked;
   // More pixels are reserved before anything changes; fewer are released after it.
   const auto pixels_before = static_cast<std::uint64_t>(core_.width) * core_.height;
-  const auto pixels = static_cast<std::uint64_t>(width) * height;
+  const auto pixels = static_cast<std::uint64_t>(size.width) * size.height;
   if (pixels > pixels_before) {
     if (const auto fits = pixels_.resize(pixels); !fits) return fits.error();
   }
@@ -148,31 +152,38 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
     if (pixels > pixels_before) (void)pixels_.resize(pixels_before);
     return stream.error();
   }
-  if (resized) {
-    if (pixels < pixels_before) (void)pixels_.resize(pixels);
-    resize(width, height);
-  }
-  return protocol::StreamState{.width = width,
-                               .height = height,
+  if (wants) core_.viewers.want_size(by, asked);
+  if (pixels < pixels_before) (void)pixels_.resize(pixels);
+  resize(size);
+  return protocol::StreamState{.width = size.width,
+                               .height = size.height,
                                .quality = static_cast<std::uint32_t>(stream->quality),
                                .max_fps = stream->max_fps,
                                .paused = stream->paused,
                                .codec = stream->codec,
-                               .still = stream->still};
+                               .still = stream->still,
+                               .depth = stream->depth};
+}
+
+FrameSize Session::size_for(std::vector<FrameSize> wanted, std::optional<FrameSize> more) const {
+  if (more) wanted.push_back(*more);
+  const SessionLimits& limits = core_.options.limits;
+  return common_size(wanted, {limits.max_width, limits.max_height});
 }
 
 /// A caller without a stream can change the size only.
 Result<ViewerStream> Session::configure_viewer(const protocol::StreamConfigure& request,
                                                const std::string& by) {
-  const bool only_size =
-      !request.quality && !request.max_fps && !request.paused && !request.codec && !request.still;
+  const bool only_size = !request.quality && !request.max_fps && !request.paused &&
+                         !request.codec && !request.still && !request.depth;
   if (by.empty() && only_size) return ViewerStream();
   return core_.viewers.configure(by, request);
 }
 
-void Session::resize(std::uint32_t width, std::uint32_t height) {
-  core_.width = width;
-  core_.height = height;
+void Session::resize(FrameSize size) {
+  if (size == FrameSize{core_.width, core_.height}) return;
+  core_.width = size.width;
+  core_.height = size.height;
   core_.changed();
   core_.viewers.announce_participants(info_locked());
 }
@@ -180,11 +191,22 @@ void Session::resize(std::uint32_t width, std::uint32_t height) {
 void Session::leave(const std::string& viewer) {
   core_.viewers.leave(viewer);
   discard_requests_of(viewer);
+  restore_size();
+}
+
+/// After a viewer has left, to what suits the others; the last one's size stays.
+void Session::restore_size() {
+  const std::lock_guard lock(core_.mutex);
+  const std::vector<FrameSize> wanted = core_.viewers.wanted_sizes();
+  if (wanted.empty()) return;
+  const FrameSize size = size_for(wanted);
+  if (pixels_.resize(static_cast<std::uint64_t>(size.width) * size.height)) resize(size);
 }
 
 Result<void> Session::move_to(const std::string& viewer, Session& other) {
   if (const auto moved = core_.viewers.move_to(viewer, other.core_.viewers); !moved) return moved;
   discard_requests_of(viewer);
+  restore_size();
   return {};
 }
 

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -54,8 +55,9 @@ class Session {
   protocol::SettingsState settings() const;
   protocol::Result<protocol::SettingsApplied> patch_settings(const protocol::RawJson& patch,
                                                              const std::string& by);
-  /// The viewer's stream, and the size of the frames of all viewers: changing the size requires
-  /// control, and a caller that is not `read_only`.
+  /// The viewer's stream, and the size of the frames of all viewers, which is chosen for all that
+  /// have asked for one: asking requires control, and a caller that is not `read_only`. A caller
+  /// without a stream sets the size, until a viewer asks for another or leaves.
   protocol::Result<protocol::StreamState> configure_stream(const protocol::StreamConfigure& request,
                                                            const std::string& by,
                                                            bool read_only = false);
@@ -96,7 +98,10 @@ class Session {
   protocol::SessionInfo info_locked() const;
   protocol::Result<ViewerStream> configure_viewer(const protocol::StreamConfigure& request,
                                                   const std::string& by);
-  void resize(std::uint32_t width, std::uint32_t height);
+  /// For viewers that want these sizes, and perhaps one more.
+  FrameSize size_for(std::vector<FrameSize> wanted, std::optional<FrameSize> more = {}) const;
+  void resize(FrameSize size);
+  void restore_size();
   /// What belongs to a viewer that is gone.
   void discard_requests_of(const std::string& viewer);
 

@@ -11,6 +11,11 @@ Result<Camera> SessionCamera::get() const {
   return core_.camera.message(core_.rev);
 }
 
+std::uint64_t SessionCamera::moves() const {
+  const std::lock_guard lock(core_.mutex);
+  return core_.camera.moves();
+}
+
 Result<Camera> SessionCamera::set(const protocol::CameraSet& request, const std::string& by) {
   const std::lock_guard lock(core_.mutex);
   if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();

@@ -13,6 +13,8 @@ class SessionCamera {
   explicit SessionCamera(SessionCore& core) : core_(core) {}
 
   protocol::Result<protocol::Camera> get() const;
+  /// How often it was moved.
+  std::uint64_t moves() const;
   protocol::Result<protocol::Camera> set(const protocol::CameraSet& request, const std::string& by);
   protocol::Result<protocol::Camera> orbit(const protocol::CameraOrbit& request,
                                            const std::string& by);

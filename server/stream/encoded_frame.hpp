@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <memory>
@@ -33,13 +32,16 @@ struct EncodedFrame {
   bool moving = false;                 // a moving frame, adapted to the link of its viewers
   std::uint64_t cuts = 0;              // number of discontinuities up to this frame
   Clock::time_point encoded_at;
+  /// The encoded protocol::FrameDepth, for viewers that asked for it; null: there is none.
+  std::shared_ptr<const std::vector<std::uint8_t>> depth;
 };
 
 using SharedFrame = std::shared_ptr<const EncodedFrame>;
 
-/// A frame to send to one viewer: its own header bytes, the shared payload.
+/// A frame to send to one viewer: its own header bytes, with the depth where the viewer asked for
+/// it, and the shared payload.
 struct OutgoingFrame {
-  std::array<std::uint8_t, protocol::frame_header_bytes> header;
+  std::vector<std::uint8_t> header;
   SharedFrame frame;
 };
 

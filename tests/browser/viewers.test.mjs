@@ -43,6 +43,36 @@ stage.test("a second viewer follows the camera of the first", async () => {
   );
 });
 
+stage.test("a phone that joins leaves the desktop's image as it is", async () => {
+  const desktop = await stage.watch();
+  await settle(desktop.page, stage.server);
+  const before = await viewImage(desktop.page, "desktop_alone");
+  const size = ({ width, height }) => `${width} x ${height}`;
+  const alone = size(await stage.server.call("session.info"));
+  const phone = await stage.watch({ viewport: { width: 390, height: 700 } });
+  await settle(phone.page, stage.server);
+  assert.equal(size(await stage.server.call("session.info")), alone);
+  const change = difference(before, await viewImage(desktop.page, "desktop_with_phone"));
+  assert.ok(change < 0.005, `the desktop's image has changed by ${change}`);
+
+  // The phone shows the middle of it, and picks what it shows.
+  await viewScreenshot(phone.page, "phone_with_desktop");
+  const shownPart = (390 / 700) * (540 / 960); // of the frame's width
+  const at = { x: 0.5 + (80 / 390 - 0.5) * shownPart, y: 0.5 };
+  const { position } = await stage.server.call("scene.pick", at);
+  await phone.page.locator("#view").dblclick({ position: { x: 80, y: 350 } });
+  await eventually(async () => {
+    const { target } = await stage.server.call("camera.get");
+    return distance(target, position) < 0.2;
+  }, `the focus at ${position}`);
+
+  await desktop.page.close();
+  await eventually(async () => {
+    const { width, height } = await stage.server.call("session.info");
+    return height > 1.5 * width;
+  }, "a size that suits the phone alone");
+});
+
 /** A swipe with one finger, as touch events. */
 async function swipe(page, from, to) {
   const session = await page.context().newCDPSession(page);

@@ -178,10 +178,14 @@ test("a fit beside the panel centres the scene in the part that is not covered",
     vertical_fov: 60,
     name: null,
   };
-  const fitted = fitBeside(start, 1.5, 0.5);
+  const fitted = fitBeside(start, 1.5, 1.5, 0.5);
   const [right] = seen(fitted, [0, 0, 0]);
   // In fractions of half the width: the centre of the left half.
   assert.ok(Math.abs(right / (Math.tan(Math.PI / 6) * 1.5) + 0.5) < 1e-9, `${right}`);
   assert.ok(fitted.eye[2] > 10, "the scene is narrower than the view");
-  assert.ok(Math.abs(fitBeside(start, 3, 0.1).eye[2] - 10) < 1e-9);
+  assert.ok(Math.abs(fitBeside(start, 3, 3, 0.1).eye[2] - 10) < 1e-9);
+  // A phone that shows the middle of a wide frame: half as wide as high.
+  const cropped = fitBeside(start, 1.5, 0.5, 0);
+  const narrow = Math.sin(Math.atan(Math.tan(Math.PI / 6) * 0.5));
+  assert.ok(Math.abs(cropped.eye[2] - (10 * Math.sin(Math.PI / 6)) / narrow) < 1e-9);
 });

@@ -15,7 +15,7 @@ and frames. Needs python3-websockets; NumPy only for arrays.
 
 from .client import AsyncClient, Client, connect, connect_async
 from .errors import HeliographError
-from .images import Capture, Frame
+from .images import Capture, Depth, Frame
 
-__all__ = ["AsyncClient", "Capture", "Client", "Frame", "HeliographError", "connect",
+__all__ = ["AsyncClient", "Capture", "Client", "Depth", "Frame", "HeliographError", "connect",
            "connect_async"]

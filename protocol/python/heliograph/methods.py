@@ -467,6 +467,7 @@ class Stream(_Group):
             self,
             *,
             codec: Literal["jpeg", "h264"] = _UNSET,
+            depth: bool = _UNSET,
             height: int = _UNSET,
             max_fps: float = _UNSET,
             paused: bool = _UNSET,
@@ -477,31 +478,33 @@ class Stream(_Group):
         in effect.
 
         codec: Codec of moving frames; one of those that hello returned.
-        height: Frame height. [pixels]
+        depth: Whether frames carry their camera and a coarse depth plane, from which the client
+            can show them from another camera.
+        height: Frame height that suits this viewer. [pixels]
         max_fps: Maximum frame rate.
         paused: Whether the stream is paused.
         quality: Quality on the scale of JPEG, for any codec.
         still: Format of the final image of a static view: JPEG without chroma subsampling, or
             lossless PNG.
-        width: Frame width. [pixels]
+        width: Frame width that suits this viewer; frames suit all viewers. [pixels]
 
-        Returns: codec, height, max_fps, paused, quality, still, width.
+        Returns: codec, depth, height, max_fps, paused, quality, still, width.
         """
         return self._call("stream.configure", _given({
-            "codec": codec, "height": height, "max_fps": max_fps, "paused": paused,
-            "quality": quality, "still": still, "width": width}))
+            "codec": codec, "depth": depth, "height": height, "max_fps": max_fps,
+            "paused": paused, "quality": quality, "still": still, "width": width}))
 
     def pause(self) -> Dict[str, Any]:
         """Pauses this viewer's stream, for instance while its page is hidden.
 
-        Returns: codec, height, max_fps, paused, quality, still, width.
+        Returns: codec, depth, height, max_fps, paused, quality, still, width.
         """
         return self._call("stream.pause", {})
 
     def resume(self) -> Dict[str, Any]:
         """Resumes this viewer's stream with the newest frame.
 
-        Returns: codec, height, max_fps, paused, quality, still, width.
+        Returns: codec, depth, height, max_fps, paused, quality, still, width.
         """
         return self._call("stream.resume", {})
 

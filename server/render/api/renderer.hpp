@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "protocol/messages/frame_depth.hpp"
 #include "protocol/result.hpp"
 #include "protocol/settings/settings.hpp"
 #include "render/api/engine.hpp"
@@ -97,6 +98,9 @@ class Renderer {
   /// The surface that the last frame shows there, or none for the background. An error where the
   /// frame has no G-buffer: when it is all path traced.
   protocol::Result<std::optional<SurfacePoint>> pick(glm::vec2 point) const;
+  /// The camera of the last frame and its surfaces, coarsely; nothing for cameras without
+  /// perspective and where the frame has no G-buffer.
+  std::optional<protocol::FrameDepth> depth() const;
 
  private:
   struct State;

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "protocol/messages/frame_depth.hpp"
 #include "protocol/messages/frame_header.hpp"
 #include "protocol/messages/messages.hpp"
 #include "render/api/renderer.hpp"
@@ -16,8 +18,10 @@ struct RenderedFrame {
   render::Frame frame;
   protocol::FrameHeader header;  // without what encoding adds
   std::vector<stream::InputEcho> inputs;
-  double fps = 0.0;                   // rendered in the last second
-  std::uint64_t discontinuities = 0;  // up to this frame
+  double fps = 0.0;                           // rendered in the last second
+  std::uint64_t discontinuities = 0;          // up to this frame
+  std::optional<protocol::FrameDepth> depth;  // absent: none, or no viewer wanted it
+  bool depth_read = false;
 };
 
 inline stream::ImageView image_view(const render::Frame& frame) {

@@ -206,10 +206,12 @@ bool SessionView::is_full_size() const {
 }
 
 /// A change and its reverse leave the image as it is, but the viewer that made them waits for a
-/// frame of the newest revision.
+/// frame of the newest revision, and the first viewer that wants depth for a frame with it.
 bool SessionView::needs_frame() const {
+  const bool lacks_depth = newest_ && !newest_->depth_read && session_->viewers().wants_depth();
   const bool outdated = newest_ && newest_->header.state_rev != state_.rev;
-  return renderer_ && (outdated || state_.animation.playing || renderer_->needs_frame());
+  return renderer_ &&
+         (outdated || lacks_depth || state_.animation.playing || renderer_->needs_frame());
 }
 
 ViewInputs SessionView::view_inputs() const {
@@ -265,11 +267,15 @@ void SessionView::begin_frame(double seconds) {
   if (state_.animation.playing) adopt_pose();
   renderer_->set_frame_seconds(static_cast<float>(seconds));
   const Clock::time_point before = std::exchange(frame_began_at_, start);
-  // A viewer that moves the camera does not wait for a sample of the view that it leaves.
+  // A viewer that moves the camera does not wait for a frame of the view that it leaves.
   const ViewState view_state = next_view_state(view_inputs());
-  const bool refining = view_state == ViewState::refining;
-  const bool began =
-      renderer_->begin([&] { return refining && session_->version() != state_.version; });
+  const Interruption by = interruption(view_inputs());
+  const bool began = renderer_->begin([&] {
+    if (by == Interruption::none) return false;
+    const bool changed = session_->version() != state_.version;
+    return changed &&
+           (by == Interruption::any_change || session_->camera().moves() != state_.camera_moves);
+  });
   if (began) {
     begun_ = {view_state, start};
   } else {
@@ -314,6 +320,8 @@ std::shared_ptr<RenderedFrame> SessionView::describe(render::Frame frame, Clock:
   rendered->inputs = state_.inputs;
   rendered->discontinuities = discontinuities_;
   rendered->fps = static_cast<double>(frame_times_.size());
+  rendered->depth_read = session_->viewers().wants_depth();
+  if (rendered->depth_read) rendered->depth = renderer_->depth();
   return rendered;
 }
 

@@ -31,6 +31,14 @@ ViewState next_view_state(const ViewInputs& in) {
   return ViewState::final;
 }
 
+Interruption interruption(const ViewInputs& in) {
+  if (next_view_state(in) == ViewState::refining) return Interruption::any_change;
+  // The frame after a canceled one is of a moving camera: one of them is always finished.
+  const bool moves = in.now < in.camera_moved_at + final_delay;
+  const bool rests = !moves && !in.lockstep && !in.animation_playing && !in.reduced_size;
+  return rests ? Interruption::camera_move : Interruption::none;
+}
+
 std::optional<Clock::time_point> next_view_transition(const ViewInputs& in) {
   if (in.lockstep) return std::nullopt;
   std::optional<Clock::time_point> next;

@@ -50,6 +50,15 @@ struct ViewInputs {
 
 ViewState next_view_state(const ViewInputs& in);
 
+/// What makes a frame that has begun worthless, so that it is canceled where the device can.
+enum class Interruption {
+  none,
+  camera_move,  // the frame of a camera at rest may be long, those of a moving one are short
+  any_change    // of what is shown
+};
+
+Interruption interruption(const ViewInputs& in);
+
 /// When the state changes next without any event; nothing where it does not. The end of
 /// `refine_delay` is left out: what may be drawn then is asked for by an event of its own, an
 /// acknowledgement or the end of a viewer's frame interval.

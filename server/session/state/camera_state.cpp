@@ -170,6 +170,7 @@ void CameraState::fit(const scene::Scene& scene, float aspect) {
 }
 
 void CameraState::move(const scene::Camera& camera, std::optional<std::string> name) {
+  if (!scene::same_view(camera_, camera)) ++moves_;
   camera_ = camera;
   name_ = std::move(name);
 }

@@ -32,6 +32,8 @@ class CameraState {
   void remove_viewer(const std::string& viewer) { input_seqs_.erase(viewer); }
 
   const scene::Camera& camera() const { return camera_; }
+  /// How often it was moved.
+  std::uint64_t moves() const { return moves_; }
   /// How often it jumped: histories of the image before do not apply.
   std::uint64_t discontinuities() const { return discontinuities_; }
   /// The newest input of each viewer.
@@ -45,6 +47,7 @@ class CameraState {
 
   scene::Camera camera_;
   std::optional<std::string> name_;  // of the scene's camera that it is
+  std::uint64_t moves_ = 0;
   std::uint64_t discontinuities_ = 0;
   std::map<std::string, std::uint32_t> input_seqs_;  // by viewer
 };

@@ -31,6 +31,7 @@ struct RenderState {
   std::shared_ptr<const SceneEdits::Materials> materials;     // null: the scene's own
   std::shared_ptr<const render::LitEnvironment> environment;  // null: the scene's own
   scene::Camera camera;
+  std::uint64_t camera_moves = 0;
   std::uint64_t discontinuities = 0;  // jumps of the camera, and changes of the scene
   bool camera_follows = false;        // the clip moves the camera
   AnimationClock animation;

@@ -42,6 +42,7 @@ RenderState SessionCore::snapshot() const {
           .materials = edits.device_materials(),
           .environment = environment,
           .camera = camera.camera(),
+          .camera_moves = camera.moves(),
           .discontinuities = camera.discontinuities(),
           .camera_follows = scene && camera.follows(*scene, clock.clip),
           .animation = clock,

@@ -3,6 +3,9 @@
 #include <utility>
 #include <vector>
 
+#include "protocol/messages/frame_depth.hpp"
+#include "stream/encoders/byte_compression.hpp"
+
 namespace heliograph::session {
 
 using std::chrono::duration_cast;
@@ -35,6 +38,13 @@ protocol::StatsFrame stats_of(const RenderedFrame& frame, protocol::TracerKind t
           .passes = pass_timings(frame.frame)};
 }
 
+std::shared_ptr<const std::vector<std::uint8_t>> encode_depth(const protocol::FrameDepth& depth) {
+  const auto compressed =
+      stream::compress_bytes(protocol::depth_differences(depth.samples, depth.width));
+  return std::make_shared<const std::vector<std::uint8_t>>(
+      protocol::encode_frame_depth(depth, compressed));
+}
+
 /// The header of the rendered frame with what the encoder adds.
 protocol::FrameHeader merged(const protocol::FrameHeader& rendered,
                              const protocol::FrameHeader& encoded) {
@@ -58,6 +68,7 @@ struct Broadcast::Encoding {
   std::shared_ptr<const RenderedFrame> rendered;
   FramePurpose purpose;
   std::uint64_t number;
+  std::shared_ptr<const std::vector<std::uint8_t>> depth;
 
   void run() {
     std::vector<stream::SharedFrame> frames;
@@ -83,6 +94,7 @@ struct Broadcast::Encoding {
     const stream::ImageView view = image_view(rendered->frame);
     const EncodingPlan plan = session->viewers().plan(number, purpose, view.rgba.size() / 4);
     std::vector<stream::SharedFrame> frames;
+    if (rendered->depth) depth = encode_depth(*rendered->depth);
     for (const stream::VariantRequest& request : plan.requests) {
       frames.push_back(timed([&] { return encoder->encode(view, request); }));
     }
@@ -100,6 +112,7 @@ struct Broadcast::Encoding {
     frame->encoded_at = Clock::now();
     frame->inputs = rendered->inputs;
     frame->cuts = rendered->discontinuities;
+    frame->depth = depth;
     frame->moving = purpose == FramePurpose::interactive;
     frame->header = merged(rendered->header, frame->header);
     const auto taken = frame->encoded_at - start;

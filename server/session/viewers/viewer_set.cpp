@@ -14,7 +14,7 @@ using std::chrono::microseconds;
 namespace {
 
 stream::OutgoingFrame make_outgoing(const stream::ViewerPacer::Taken& taken,
-                                    const std::string& viewer, bool discontinuous) {
+                                    const std::string& viewer, bool discontinuous, bool depth) {
   protocol::FrameHeader header = taken.frame->header;
   header.frame_seq = taken.frame_seq;
   if (taken.first_after_drop) header.flags |= protocol::frame_flag::first_after_drop;
@@ -24,7 +24,16 @@ stream::OutgoingFrame make_outgoing(const stream::ViewerPacer::Taken& taken,
   }
   const auto queued = duration_cast<microseconds>(Clock::now() - taken.frame->encoded_at);
   header.queue_us = static_cast<std::uint32_t>(queued.count());
-  return {.header = protocol::encode_frame_header(header), .frame = taken.frame};
+  const std::vector<std::uint8_t>* const surfaces = depth ? taken.frame->depth.get() : nullptr;
+  if (surfaces) {
+    header.flags |= protocol::frame_flag::depth;
+    header.header_bytes =
+        static_cast<std::uint16_t>(protocol::frame_header_bytes + surfaces->size());
+  }
+  const auto fixed = protocol::encode_frame_header(header);
+  std::vector<std::uint8_t> bytes(fixed.begin(), fixed.end());
+  if (surfaces) bytes.insert(bytes.end(), surfaces->begin(), surfaces->end());
+  return {.header = std::move(bytes), .frame = taken.frame};
 }
 
 /// Adds the measurements of one viewer's stream.
@@ -71,6 +80,7 @@ Result<ViewerStream> ViewerSet::configure(const std::string& viewer,
     target.offered = 0;
     if (target.pacer.frame_pending()) target.pacer.drop_pending();
   }
+  if (change.depth) target.stream.depth = *change.depth;
   if (change.quality) target.stream.quality = static_cast<int>(*change.quality);
   if (change.max_fps) {
     target.stream.max_fps = *change.max_fps;
@@ -130,7 +140,7 @@ std::optional<stream::OutgoingFrame> ViewerSet::take(const std::string& viewer) 
   const std::uint64_t discontinuities = taken->frame->cuts;
   const bool jumped = std::exchange((*found)->discontinuities, discontinuities) != discontinuities;
   const bool discontinuous = std::exchange((*found)->discontinuous, false) || jumped;
-  return make_outgoing(*taken, viewer, discontinuous);
+  return make_outgoing(*taken, viewer, discontinuous, (*found)->stream.depth);
 }
 
 bool ViewerSet::empty() const {
@@ -148,6 +158,13 @@ bool ViewerSet::can_accept_frame() const {
   const Clock::time_point now = Clock::now();
   return std::any_of(viewers_.begin(), viewers_.end(), [&](const auto& entry) {
     return entry.second.started && entry.second.pacer.has_room(now);
+  });
+}
+
+bool ViewerSet::wants_depth() const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(viewers_.begin(), viewers_.end(), [](const auto& entry) {
+    return entry.second.started && !entry.second.stream.paused && entry.second.stream.depth;
   });
 }
 

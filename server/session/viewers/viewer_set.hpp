@@ -12,6 +12,7 @@
 
 #include "protocol/messages/messages.hpp"
 #include "protocol/result.hpp"
+#include "session/viewers/common_size.hpp"
 #include "session/viewers/control.hpp"
 #include "session/viewers/frame_purpose.hpp"
 #include "session/viewers/viewer_link.hpp"
@@ -32,6 +33,7 @@ struct ViewerStream {
   bool decodes_video = false;  // agreed on in hello
   protocol::StreamCodec codec = protocol::StreamCodec::jpeg;
   protocol::StillFormat still = protocol::StillFormat::jpeg;
+  bool depth = false;
 };
 
 /// How to encode one frame.
@@ -83,6 +85,10 @@ class ViewerSet {
 
   protocol::Result<ViewerStream> configure(const std::string& viewer,
                                            const protocol::StreamConfigure& change);
+  /// The frame size that suits the viewer's window.
+  void want_size(const std::string& viewer, FrameSize size);
+  /// Those of all viewers that have told, but for one.
+  std::vector<FrameSize> wanted_sizes(const std::string& except = {}) const;
   protocol::Result<void> acknowledge(const std::string& viewer, const protocol::StreamAck& ack);
   protocol::Result<void> subscribe(const std::string& viewer, std::chrono::milliseconds interval);
   /// Since when the oldest frame in flight to this viewer waits for its acknowledgement.
@@ -96,6 +102,8 @@ class ViewerSet {
   bool has_other_participant(const std::string& viewer) const;
   /// Whether any viewer could be sent a frame that is rendered now.
   bool can_accept_frame() const;
+  /// Whether a viewer that is not paused asked for the depth of frames.
+  bool wants_depth() const;
   /// Whether any viewer is started and not paused.
   bool has_active_viewer() const;
   /// When the next viewer may be sent a frame again that only its rate limit holds back.
@@ -127,6 +135,7 @@ class ViewerSet {
     std::optional<std::string> name;
     stream::ViewerPacer pacer;
     ViewerStream stream;
+    std::optional<FrameSize> wanted;
     bool started = false;
     bool discontinuous = false;         // its next frame does not continue the last one
     std::uint64_t discontinuities = 0;  // of the last frame that it took

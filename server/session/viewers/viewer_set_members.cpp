@@ -51,6 +51,7 @@ Result<void> ViewerSet::accept(Viewers::node_type& viewer) {
   if (const Result<void> capacity = check_capacity(); !capacity) return capacity;
   if (viewer.empty()) return {};
   Viewer& accepted = viewers_.insert(std::move(viewer)).position->second;
+  accepted.wanted.reset();
   accepted.pacer.drop_pending();
   accepted.discontinuous = true;
   accepted.offered = 0;
@@ -80,6 +81,20 @@ void ViewerSet::leave(const std::string& viewer) {
   departed_ += found->second.pacer.totals();
   viewers_.erase(found);
   control_.on_viewer_left(viewer);
+}
+
+void ViewerSet::want_size(const std::string& viewer, FrameSize size) {
+  const std::lock_guard lock(mutex_);
+  if (const Result<Viewer*> found = find(viewer)) (*found)->wanted = size;
+}
+
+std::vector<FrameSize> ViewerSet::wanted_sizes(const std::string& except) const {
+  const std::lock_guard lock(mutex_);
+  std::vector<FrameSize> sizes;
+  for (const auto& [id, viewer] : viewers_) {
+    if (id != except && viewer.wanted) sizes.push_back(*viewer.wanted);
+  }
+  return sizes;
 }
 
 bool ViewerSet::has_other_participant(const std::string& viewer) const {

@@ -7,6 +7,11 @@ function observe() {
     /** The newest frame on the canvas, and the number of frames of each codec. */
     frame: null,
     drawn: {},
+    /** Number of images that were reprojected from the newest frame, the camera.set that the last
+     * of them shows, and the number of all images: those and frames as they are. */
+    predicted: 0,
+    predictedSeq: 0,
+    shown: 0,
     firstDrawnAt: null,
     /** Milliseconds from each frame's arrival to the canvas. */
     delays: [],
@@ -59,10 +64,16 @@ function observe() {
       handler.set.call(this, (event) => {
         listener(event);
         if (this !== stream) return;
-        const { kind, frame, text } = event.data;
+        const { kind, frame, text, seq } = event.data;
         if (kind === "text") received(text);
+        if (kind === "predicted") {
+          seen.predicted += 1;
+          seen.predictedSeq = seq;
+          seen.shown += 1;
+        }
         if (kind !== "drawn" && kind !== "decoded") return;
         seen.frame = frame;
+        if (frame.inputSeqEcho >= seen.predictedSeq) seen.shown += 1;
         seen.firstDrawnAt ??= frame.drawnAt;
         seen.delays.push(frame.drawnAt - frame.receivedAt);
         count(seen.drawn, frame.codec);

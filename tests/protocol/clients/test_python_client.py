@@ -131,6 +131,35 @@ class Library(ServerTestCase):
             with self.assertRaises(asyncio.TimeoutError):
                 view.next_frame(timeout=0.0)
 
+    def test_frames_carry_depth_where_it_was_requested(self):
+        with self.connect() as view:
+            view.stream.configure(width=320, height=184)
+            self.assertIsNone(view.next_frame().depth)
+            self.assertTrue(view.stream.configure(depth=True)["depth"])
+            frame = view.next_frame()
+            while not frame.depth:
+                frame = view.next_frame()
+            depth = frame.depth
+            self.assertEqual((depth.width, depth.height), (64, 37))
+            camera = view.camera.get()
+            numpy.testing.assert_allclose(depth.eye, camera["eye"], rtol=1e-6)
+            numpy.testing.assert_allclose(depth.target, camera["target"], atol=1e-6)
+            self.assertAlmostEqual(depth.vertical_fov, camera["vertical_fov"], places=4)
+            view_z = view.array("gbuffer.motion.view_z")
+            view_z = numpy.where(view_z > 0, view_z, numpy.inf)
+            surfaces = 0
+            for row in range(depth.height):
+                for column in range(depth.width):
+                    top, left = int(row * 184 / 37), column * 5
+                    # The samples of a frame lie elsewhere in their pixels.
+                    block = view_z[max(0, top - 1):top + 7, max(0, left - 1):left + 6]
+                    sample = depth.view_z(column, row)
+                    self.assertGreaterEqual(sample, 0.9 * block.min())
+                    self.assertLessEqual(sample, 1.1 * block.max())
+                    surfaces += sample < 1e6
+            self.assertGreater(surfaces, 100)
+            self.assertIsNotNone(frame._repr_jpeg_())
+
     def test_lockstep(self):
         with self.connect() as view:
             self.assertEqual(view.step(2, 0.1)["frames"], 2)

@@ -180,6 +180,24 @@ TEST_F(SessionTest, ClampsTheFrameSizeToTheLimit) {
   EXPECT_EQ(session_.render_state().width, 3840u);
 }
 
+TEST_F(SessionTest, FramesSuitAllViewersAndThoseThatStay) {
+  const Joined desktop = join();
+  const Joined phone = join();
+  const auto size = [&] {
+    const RenderState state = session_.render_state();
+    return FrameSize{state.width, state.height};
+  };
+  ASSERT_TRUE(session_.configure_stream({.width = 1280, .height = 720}, desktop.id));
+  const auto stream = session_.configure_stream({.width = 390, .height = 844}, phone.id);
+  ASSERT_TRUE(stream);
+  EXPECT_EQ(stream->width, 1280u) << "the phone shows the middle of it";
+  EXPECT_EQ(size(), (FrameSize{1280, 720}));
+  session_.leave(desktop.id);
+  EXPECT_EQ(size(), (FrameSize{390, 844}));
+  session_.leave(phone.id);
+  EXPECT_EQ(size(), (FrameSize{390, 844}));
+}
+
 TEST_F(SessionTest, CallersWithoutAStreamCanOnlySetTheSize) {
   EXPECT_EQ(session_.configure_stream({.width = 320}, "")->width, 320u);
   EXPECT_EQ(session_.configure_stream({.quality = 50}, "").error().code, ErrorCode::not_ready);

@@ -69,6 +69,23 @@ TEST(ViewState, FollowsItsTableOfTransitions) {
   for (const Row& row : table) EXPECT_EQ(next_view_state(row.in), row.expected) << row.name;
 }
 
+TEST(ViewState, FramesOfACameraAtRestAreInterrupted) {
+  ViewInputs in = static_view(1h);
+  in.needs_frame = true;
+  EXPECT_EQ(interruption(in), Interruption::any_change) << "refining";
+  in.state_changed_at = in.now;  // a setting, or the scene
+  EXPECT_EQ(interruption(in), Interruption::camera_move);
+  in.animation_playing = true;
+  EXPECT_EQ(interruption(in), Interruption::none);
+  in.animation_playing = false;
+  // The frame after the interruption: that of a camera that moves is finished.
+  in.camera_moved_at = in.now;
+  EXPECT_EQ(interruption(in), Interruption::none);
+  in.camera_moved_at = in.now - final_delay;
+  in.reduced_size = true;
+  EXPECT_EQ(interruption(in), Interruption::none);
+}
+
 TEST(ViewState, WakesUpForTheFinalFrame) {
   EXPECT_EQ(next_view_transition(static_view(100ms)), view_start + final_delay);
   EXPECT_EQ(next_view_transition(static_view(300ms)), std::nullopt) << "the time has come";

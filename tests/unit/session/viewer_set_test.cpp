@@ -66,6 +66,30 @@ std::vector<stream::EncodingVariant> show(ViewerSet& viewers, std::uint32_t numb
   return forms;
 }
 
+TEST_F(ViewerSetTest, DepthFollowsTheHeaderOfViewersThatAskedForIt) {
+  const Joined plain = join();
+  const Joined deep = join();
+  EXPECT_FALSE(viewers_.wants_depth());
+  ASSERT_TRUE(viewers_.configure(deep.id, {.depth = true}));
+  EXPECT_TRUE(viewers_.wants_depth());
+  (void)viewers_.plan(1, FramePurpose::interactive, 16 * 16);
+  const auto frame = encoded(1, {});
+  frame->depth = std::make_shared<const std::vector<std::uint8_t>>(10, std::uint8_t{7});
+  viewers_.publish(1, FramePurpose::interactive, {frame});
+
+  const auto without = viewers_.take(plain.id);
+  EXPECT_EQ(without->header.size(), 64u);
+  EXPECT_FALSE(protocol::decode_frame_header(without->header)->flags & protocol::frame_flag::depth);
+  const auto with = viewers_.take(deep.id);
+  ASSERT_EQ(with->header.size(), 74u);
+  EXPECT_EQ(with->header.back(), 7);
+  const auto header = protocol::decode_frame_header(with->header);
+  EXPECT_EQ(header->header_bytes, 74);
+  EXPECT_TRUE(header->flags & protocol::frame_flag::depth);
+  ASSERT_TRUE(viewers_.configure(deep.id, {.paused = true}));
+  EXPECT_FALSE(viewers_.wants_depth());
+}
+
 TEST_F(ViewerSetTest, RefusesMoreViewersThanItsLimit) {
   const Joined first = join();
   const Joined second = join();

@@ -19,7 +19,7 @@ import { fitBeside, focusOn } from "../view/camera.ts";
 import { createDivider } from "../view/divider.ts";
 import { Navigation } from "../view/navigation.ts";
 import { createPicker } from "../view/picker.ts";
-import { frameSize, watchSize } from "../view/viewport.ts";
+import { frameSize, pointInFrame, watchSize } from "../view/viewport.ts";
 import { mountTooltips } from "../widgets/tooltip.ts";
 
 const textInputs = "input:not([type=range], [type=checkbox])";
@@ -78,7 +78,11 @@ function main(): void {
     const { left } = find("panel").getBoundingClientRect();
     const { clientWidth, clientHeight } = canvas;
     const covered = panel.isBeside() ? Math.max(0, 1 - left / clientWidth) : 0;
-    return covered > 0 ? fitBeside(camera, clientWidth / clientHeight, covered) : camera;
+    const aspect = clientWidth / clientHeight;
+    const frame = viewer.frame.value;
+    const frameAspect = frame ? frame.width / frame.height : aspect;
+    const cropped = aspect < 0.98 * frameAspect;
+    return covered > 0 || cropped ? fitBeside(camera, frameAspect, aspect, covered) : camera;
   };
   viewer.cameraMoves.animateTo = (camera, recorded) => navigation.goTo(camera, recorded);
   viewer.cameraMoves.isBusy = () => navigation.active;
@@ -119,6 +123,11 @@ function main(): void {
       maxHeight: limits.max_height,
       maxPixels: automatic && device.type === "cpu" ? softwarePixels : Infinity,
     });
+  };
+  viewer.inFrame = (x, y) => {
+    const frame = viewer.frame.value;
+    const view = { width: canvas.clientWidth, height: canvas.clientHeight };
+    return frame ? pointInFrame(view, frame, x, y) : { x, y };
   };
   let resizeTimer = 0;
   watchSize(canvas, () => {

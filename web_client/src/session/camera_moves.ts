@@ -14,8 +14,8 @@ interface CameraMovesHost {
   scene: Signal<SceneInfo | null>;
   latency: LatencyMeter;
   history: UndoHistory;
-  /** The user has moved the camera. */
-  moved(camera: CameraPose): void;
+  /** The user has moved the camera; `seq` numbers the message to the server. */
+  moved(camera: CameraPose, seq: number): void;
   attempt(action: () => Promise<unknown>): Promise<void>;
 }
 
@@ -42,9 +42,10 @@ export class CameraMoves {
   moveTo(camera: CameraPose, recorded = true): void {
     if (recorded) this.remember(camera);
     this.host.camera.set(camera);
-    this.host.moved(camera);
+    const seq = this.nextInput();
+    this.host.moved(camera, seq);
     const { eye, target, up, vertical_fov } = camera;
-    this.host.rpc.notify("camera.set", { eye, target, up, vertical_fov, seq: this.nextInput() });
+    this.host.rpc.notify("camera.set", { eye, target, up, vertical_fov, seq });
   }
 
   /** Selects a camera of the scene. */

@@ -1,7 +1,7 @@
 // Questions about the frame: files of it, and the surface at a point.
 
 import type { Vector3 } from "heliograph/json.ts";
-import type { Capture, FrameCaptureParams, Pick } from "heliograph/messages.ts";
+import type { Capture, FrameCaptureParams, Inspection, Pick } from "heliograph/messages.ts";
 import type { RpcPeer } from "heliograph/rpc.ts";
 import { captureBlob, thumbnailUrl } from "../common/image_files.ts";
 import type { ServerCapabilities } from "./server_capabilities.ts";
@@ -13,6 +13,8 @@ interface FrameQueriesHost {
   capabilities: ServerCapabilities;
   /** The buffer that is shown. */
   buffer(): string;
+  /** Where a point of the view lies in the frame, both in fractions of width and height. */
+  inFrame(x: number, y: number): { x: number; y: number };
   report(error: unknown): void;
 }
 
@@ -23,11 +25,11 @@ export class FrameQueries {
     this.host = host;
   }
 
-  /** The surface at a point, given in fractions of the image size from the top left. */
+  /** The surface at a point, given in fractions of the view's size from the top left. */
   async pick(x: number, y: number): Promise<Pick | null> {
     if (!this.host.capabilities.has("scene.pick")) return null;
     try {
-      const pick = await this.host.rpc.request("scene.pick", { x, y });
+      const pick = await this.host.rpc.request("scene.pick", this.host.inFrame(x, y));
       return pick.hit ? pick : null;
     } catch (error) {
       this.host.report(error);
@@ -39,10 +41,15 @@ export class FrameQueries {
   async surfaceAt(x: number, y: number): Promise<Vector3 | null> {
     if (!this.host.capabilities.has("scene.pick")) return null;
     try {
-      return (await this.host.rpc.request("scene.pick", { x, y })).position;
+      return (await this.host.rpc.request("scene.pick", this.host.inFrame(x, y))).position;
     } catch {
       return null;
     }
+  }
+
+  /** The values of all buffers at a point of the view. */
+  async inspect(x: number, y: number): Promise<Inspection> {
+    return this.host.rpc.request("frame.inspect", this.host.inFrame(x, y));
   }
 
   /** A buffer as a file; by default the one that is shown, converged. */

@@ -52,7 +52,8 @@ export class StreamRequests {
     const choice = { codec: codec as StreamSettings["codec"] };
     const coded = hello.codecs.length > 1 && hello.codecs.includes(codec) ? choice : {};
     const paused = startPaused || restart ? { paused: true } : {};
-    await this.configure({ ...this.preferred, ...this.size(), ...coded, ...paused });
+    const depth = this.preferred.depth ?? true;
+    await this.configure({ ...this.preferred, ...this.size(), ...coded, ...paused, depth });
     if (restart && !startPaused) await this.resume();
   }
 

@@ -21,7 +21,7 @@ import { CanvasPainter } from "../stream/canvas_painter.ts";
 import { Connection } from "../stream/connection.ts";
 import { LatencyMeter } from "../stream/latency.ts";
 import { RateMeter } from "../stream/rates.ts";
-import { type DrawnFrame } from "../stream/worker_messages.ts";
+import { type DrawnFrame, clockMs } from "../stream/worker_messages.ts";
 import { type Activity, activityOf } from "./activity.ts";
 import { type ControlState, controlStateOf, describeControl } from "./control_state.ts";
 import { CameraMoves } from "./camera_moves.ts";
@@ -68,8 +68,15 @@ export class Viewer {
   readonly activity = new Signal<Activity | null>(null);
   readonly stats = new Signal<FrameStats | null>(null);
   readonly frame = new Signal<DrawnFrame | null>(null);
+  /** From an input to the first frame of the server that shows it. */
   readonly latency = new LatencyMeter();
+  /** From an input to the first image that shows it: a frame, or one that was reprojected. */
+  readonly responses = new LatencyMeter();
   readonly rates = new RateMeter();
+  /** Of all images that are shown. */
+  readonly shownRates = new RateMeter();
+  /** Where a point of the view lies in the frame, both in fractions of width and height. */
+  inFrame: (x: number, y: number) => { x: number; y: number } = (x, y) => ({ x, y });
   /** Shows an error as one sentence. */
   onError: (message: string) => void = () => {};
   /** Shows why a scene file was not loaded. */
@@ -82,6 +89,8 @@ export class Viewer {
   addBookmark: () => void = () => {};
   private animationReadAt = 0;
   private animationRev = 0;
+  /** Of the newest camera that a reprojected image has shown. */
+  private predictedSeq = 0;
   /** From the arrival of the server's hello until the connection is lost. */
   private receivedHello: Hello | null = null;
   /** The state that is still to be restored; it survives lost connections. */
@@ -101,6 +110,12 @@ export class Viewer {
       notification: (method, params) => this.notified(method, params),
       drawn: (frame) => this.frameDrawn(frame),
       draw: (image, frame) => painter?.draw(image, frame.width, frame.height),
+      predicted: (seq, drawnAt) => {
+        this.predictedSeq = seq;
+        this.shownRates.add(drawnAt, 0);
+        this.responses.frameDrawn(seq, drawnAt);
+      },
+      cannotPredict: () => this.stream.request({ depth: false }),
       warning: (message) => this.onError(message),
       decodeFailed: (message, video) => {
         if (video) this.stream.onVideoError();
@@ -133,8 +148,11 @@ export class Viewer {
       scene: this.scene,
       latency: this.latency,
       history: this.history,
-      moved: (camera) => {
+      moved: (camera, seq) => {
         if (this.pendingViewState) this.pendingViewState.camera = camera;
+        const { eye, target, up, vertical_fov } = camera;
+        this.connection.predict({ eye, target, up, vertical_fov, seq });
+        this.responses.inputSent(seq, clockMs());
       },
       attempt: (action) => this.attempt(action),
     });
@@ -152,6 +170,7 @@ export class Viewer {
       rpc: this.rpc,
       capabilities: this.capabilities,
       buffer: () => String(this.settings.value(bufferSetting) ?? "output"),
+      inFrame: (x, y) => this.inFrame(x, y),
       report: (error) => this.report(error),
     });
     this.sessionRestore = new SessionRestore({
@@ -269,6 +288,8 @@ export class Viewer {
   private async becomeLive(hello: Hello): Promise<void> {
     this.receivedHello = hello;
     this.latency.reset();
+    this.responses.reset();
+    this.predictedSeq = 0;
     this.cameraMoves.reset();
     this.animationRev = 0;
     await this.readSession();
@@ -359,6 +380,7 @@ export class Viewer {
     const viewers = session.viewers.map((viewer) => ({ ...viewer, you: viewer.viewer === own }));
     this.session.set({ ...session, viewers });
     this.controlState.set(controlStateOf(this.session.value, this.receivedHello?.role));
+    if (!this.mayChange) this.connection.predict(null);
     this.stream.onFrameSize(session);
     this.stream.updateSize();
   }
@@ -374,7 +396,10 @@ export class Viewer {
 
   private frameDrawn(frame: DrawnFrame): void {
     this.rates.add(frame.drawnAt, frame.bytes);
+    // Frames that are behind the camera have been counted as they were reprojected.
+    if (frame.inputSeqEcho >= this.predictedSeq) this.shownRates.add(frame.drawnAt, 0);
     this.latency.frameDrawn(frame.inputSeqEcho, frame.drawnAt);
+    this.responses.frameDrawn(frame.inputSeqEcho, frame.drawnAt);
     if (frame.codec === Codec.h264) this.stream.onVideoFrame();
     this.loading.frameDrawn(frame.stateRev);
     this.frame.set(frame);
@@ -396,6 +421,7 @@ export class Viewer {
         break;
       case "camera.changed":
         if (this.pendingViewState || this.cameraMoves.isBusy()) break;
+        this.connection.predict(null);
         this.camera.set((params as Notifications["camera.changed"]).camera);
         break;
       case "animation.changed":

@@ -1,6 +1,6 @@
 // Draws decoded frames on a canvas. The canvas takes the size of the frame, CSS scales it.
 export class CanvasPainter {
-  private readonly canvas: HTMLCanvasElement | OffscreenCanvas;
+  readonly canvas: HTMLCanvasElement | OffscreenCanvas;
   private readonly context: CanvasRenderingContext2D | OffscreenCanvasRenderingContext2D;
 
   private drawn = false;
@@ -26,5 +26,10 @@ export class CanvasPainter {
     this.context.drawImage(image, 0, 0);
     this.drawn = true;
     image.close();
+  }
+
+  /** Draws an image over the whole frame. */
+  overlay(image: OffscreenCanvas): void {
+    this.context.drawImage(image, 0, 0, this.canvas.width, this.canvas.height);
   }
 }

@@ -12,7 +12,13 @@ import {
   mainSession,
   rendezvousRoute,
 } from "./session_address.ts";
-import type { DrawnFrame, FrameRequirement, FromWorker, ToWorker } from "./worker_messages.ts";
+import type {
+  DrawnFrame,
+  FrameRequirement,
+  FromWorker,
+  PredictedCamera,
+  ToWorker,
+} from "./worker_messages.ts";
 
 export type ConnectionState =
   | { kind: "connecting" }
@@ -34,6 +40,10 @@ interface ConnectionEvents {
   drawn(frame: DrawnFrame): void;
   /** Only where the worker cannot draw: draws the image and takes ownership of it. */
   draw(image: ImageBitmap | VideoFrame, frame: DrawnFrame): void;
+  /** An image was drawn that shows the page's input before a frame of the server does. */
+  predicted?(seq: number, drawnAt: number): void;
+  /** This browser cannot do that. */
+  cannotPredict?(): void;
   warning(message: string): void;
   /** A frame was lost; with `video`, all frames that depend on it as well. */
   decodeFailed(message: string, video: boolean): void;
@@ -165,6 +175,11 @@ export class Connection {
     this.post({ kind: "copy_frames", enabled: listener !== null });
   }
 
+  /** Shows the newest frame from this camera until a frame shows it; null: no longer. */
+  predict(camera: PredictedCamera | null): void {
+    this.post({ kind: "predict", camera });
+  }
+
   /** Holds frames back until `release`, which shows those that are new enough. */
   hold(): void {
     this.post({ kind: "hold" });
@@ -203,6 +218,12 @@ export class Connection {
       case "decoded":
         this.events.draw(message.image, message.frame);
         this.events.drawn(message.frame);
+        break;
+      case "predicted":
+        this.events.predicted?.(message.seq, message.drawnAt);
+        break;
+      case "cannot_predict":
+        this.events.cannotPredict?.();
         break;
       case "copied":
         this.onCopy(message.id, message.image);

@@ -1,6 +1,7 @@
 // Decodes and draws the newest frame. An image that arrives while another is being decoded replaces
 // the queued one: the latest frame matters, not every frame.
 
+import { type FrameDepth, readFrameDepth } from "heliograph/frame_depth.ts";
 import {
   Codec,
   FrameFlag,
@@ -12,8 +13,12 @@ import { type ArrivedFrame, VideoFrames } from "./video_frames.ts";
 import { type DrawnFrame, type FrameRequirement, clockMs } from "./worker_messages.ts";
 
 export interface FrameSink {
-  /** Draws the image and takes ownership of it. */
-  draw(image: ImageBitmap | VideoFrame, frame: DrawnFrame): void;
+  /** Draws the image and takes ownership of it; `depth` is that of the frame, if it has one. */
+  draw(
+    image: ImageBitmap | VideoFrame,
+    frame: DrawnFrame,
+    depth: Promise<FrameDepth | null>,
+  ): void;
   /** Acknowledges a frame to the server, whether drawn or skipped. */
   acknowledge(frameSeq: number, decodeUs: number, presentUs: number): void;
   /** A frame is lost; with `video`, all frames up to the next key frame as well. */
@@ -60,7 +65,9 @@ export class FramePipeline {
       this.sink.failed((error as Error).message, false);
       return;
     }
-    const frame = { header, message, receivedAt: clockMs() };
+    const depth = readFrameDepth(message, header);
+    depth.catch(() => {}); // PredictedView handles it, if it shows the frame
+    const frame = { header, message, receivedAt: clockMs(), depth };
     if (header.codec === Codec.h264) {
       this.video.push(frame);
       return;
@@ -140,7 +147,7 @@ export class FramePipeline {
 
   private present(
     image: ImageBitmap | VideoFrame,
-    { header, message, receivedAt }: ArrivedFrame,
+    { header, message, receivedAt, depth }: ArrivedFrame,
     startedAt: number,
   ): void {
     const { required, held, newestDrawn } = this;
@@ -153,7 +160,7 @@ export class FramePipeline {
     this.newestDrawn = header.frameSeq;
     this.required.size = undefined;
     const decodedAt = clockMs();
-    this.sink.draw(image, {
+    const drawn: DrawnFrame = {
       frameSeq: header.frameSeq,
       inputSeqEcho: header.inputSeqEcho,
       renderId: header.renderId,
@@ -170,7 +177,8 @@ export class FramePipeline {
       decodeMs: decodedAt - startedAt,
       receivedAt,
       drawnAt: clockMs(),
-    });
+    };
+    this.sink.draw(image, drawn, depth);
     const decodeUs = Math.round((decodedAt - startedAt) * 1000);
     const presentUs = Math.round((clockMs() - receivedAt) * 1000);
     this.sink.acknowledge(header.frameSeq, decodeUs, presentUs);

@@ -1,6 +1,7 @@
 // Decodes a video stream (H.264, Annex B). Every frame depends on the one before: all are decoded
 // in order, and after a loss the frames up to the next key frame are skipped.
 
+import type { FrameDepth } from "heliograph/frame_depth.ts";
 import { type FrameHeader, FrameFlag } from "heliograph/frame_header.ts";
 import { codecString } from "./annex_b.ts";
 
@@ -14,6 +15,7 @@ export interface ArrivedFrame {
   header: FrameHeader;
   message: ArrayBuffer;
   receivedAt: number;
+  depth: Promise<FrameDepth | null>;
 }
 
 interface VideoSink {

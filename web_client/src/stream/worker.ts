@@ -1,8 +1,9 @@
 // The stream worker: owns the WebSocket, decodes and draws, so that a busy page delays no frame.
 
 import { CanvasPainter } from "./canvas_painter.ts";
+import { PredictedView } from "./predicted_view.ts";
 import { FramePipeline, type FrameSink, chooseDecoder } from "./frame_pipeline.ts";
-import type { FromWorker, ToWorker } from "./worker_messages.ts";
+import { type FromWorker, type ToWorker, clockMs } from "./worker_messages.ts";
 
 interface WorkerScope {
   postMessage(message: FromWorker, transfer?: Transferable[]): void;
@@ -11,18 +12,20 @@ interface WorkerScope {
 const scope = self as unknown as WorkerScope;
 
 let socket: WebSocket | null = null;
-let painter: CanvasPainter | null = null;
+let view: PredictedView | null = null;
 let copyFrames = false;
 
 const sink: FrameSink = {
-  draw(image, frame) {
-    if (painter) {
-      painter.draw(image, frame.width, frame.height);
+  draw(image, frame, depth) {
+    if (!view) {
+      scope.postMessage({ kind: "decoded", image, frame }, [image]);
+      return;
+    }
+    void view.show(image, frame, depth).then((shown) => {
+      if (!shown) return;
       scope.postMessage({ kind: "drawn", frame });
       if (copyFrames) void postCopy(0);
-    } else {
-      scope.postMessage({ kind: "decoded", image, frame }, [image]);
-    }
+    });
   },
   acknowledge(frameSeq, decodeUs, presentUs) {
     const params = { frame_seq: frameSeq, decode_us: decodeUs, present_us: presentUs };
@@ -39,11 +42,19 @@ function send(text: string): void {
 }
 
 async function postCopy(id: number): Promise<void> {
-  const image = (await painter?.copy()) ?? null;
+  const image = (await view?.copy()) ?? null;
   scope.postMessage({ kind: "copied", id, image }, image ? [image] : []);
 }
 
+function showOn(canvas: OffscreenCanvas): void {
+  view = new PredictedView(new CanvasPainter(canvas), {
+    predicted: (seq) => scope.postMessage({ kind: "predicted", seq, drawnAt: clockMs() }),
+    unsupported: () => scope.postMessage({ kind: "cannot_predict" }),
+  });
+}
+
 function close(): void {
+  view?.predict(null);
   if (!socket) return;
   socket.onopen = socket.onmessage = socket.onclose = null;
   socket.close(1000);
@@ -68,6 +79,7 @@ async function open(url: string, subprotocol: string): Promise<void> {
   opening.onclose = ({ code, reason }) => {
     socket = null;
     frames.clear();
+    view?.predict(null);
     scope.postMessage({ kind: "closed", code, reason, wasOpen });
   };
   socket = opening;
@@ -76,7 +88,7 @@ async function open(url: string, subprotocol: string): Promise<void> {
 scope.onmessage = ({ data }) => {
   switch (data.kind) {
     case "canvas":
-      painter = new CanvasPainter(data.canvas);
+      showOn(data.canvas);
       break;
     case "open":
       void open(data.url, data.subprotocol);
@@ -89,6 +101,9 @@ scope.onmessage = ({ data }) => {
       break;
     case "copy_frames":
       copyFrames = data.enabled;
+      break;
+    case "predict":
+      view?.predict(data.camera);
       break;
     case "hold":
       void pipeline.then((frames) => frames.hold());

@@ -1,5 +1,7 @@
 // Messages between the page and the stream worker.
 
+import type { ViewCamera } from "./reprojection.ts";
+
 /** A frame that was drawn. Times are milliseconds since the epoch, sub-millisecond. */
 export interface DrawnFrame {
   frameSeq: number;
@@ -22,6 +24,11 @@ export interface DrawnFrame {
   drawnAt: number;
 }
 
+/** A camera that the page has sent to the server, as camera.set number `seq`. */
+export interface PredictedCamera extends ViewCamera {
+  seq: number;
+}
+
 /** The oldest frame to be shown. */
 export interface FrameRequirement {
   oldestRev: number;
@@ -39,6 +46,8 @@ export type ToWorker =
   /** Holds frames back until `release`. */
   | { kind: "hold" }
   | { kind: "release"; required: FrameRequirement }
+  /** Shows the newest frame from this camera until a frame shows it; null: no longer. */
+  | { kind: "predict"; camera: PredictedCamera | null }
   | { kind: "send"; text: string };
 
 export type FromWorker =
@@ -46,6 +55,9 @@ export type FromWorker =
   | { kind: "closed"; code: number; reason: string; wasOpen: boolean }
   | { kind: "text"; text: string }
   | { kind: "drawn"; frame: DrawnFrame }
+  /** The newest frame was drawn from the predicted camera of this number. */
+  | { kind: "predicted"; seq: number; drawnAt: number }
+  | { kind: "cannot_predict" }
   /** Only without OffscreenCanvas: the page draws the image itself. */
   | { kind: "decoded"; image: ImageBitmap | VideoFrame; frame: DrawnFrame }
   /** Answers `copy` (null: nothing was drawn yet), or has id 0 for `copy_frames`. */

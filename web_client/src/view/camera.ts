@@ -1,8 +1,8 @@
 // Camera movements as pure functions: a pose in, a pose out. World space, metres, +Y up.
 
 import type { Vector3 } from "heliograph/json.ts";
-import type { CameraPose } from "../common/camera_pose.ts";
-import { add, cross, dot, length, normalize, scale, subtract } from "../common/vector.ts";
+import { type CameraPose, basis } from "../common/camera_pose.ts";
+import { add, dot, length, normalize, scale, subtract } from "../common/vector.ts";
 
 const worldUp: Vector3 = [0, 1, 0];
 
@@ -153,16 +153,23 @@ export function focusOn(camera: CameraPose, point: Vector3, distance: number): C
 }
 
 /**
- * A pose that fits the scene into the whole image, moved so that it fits beside the part at the
- * right that is covered, in fractions of the width. `aspect` is width by height of the image.
+ * A pose that fits the scene into a frame of `frameAspect`, width by height, moved so that it fits
+ * into a view that shows the middle of the frame, beside the part at the right that is covered, in
+ * fractions of the view's width.
  */
-export function fitBeside(camera: CameraPose, aspect: number, covered: number): CameraPose {
+export function fitBeside(
+  camera: CameraPose,
+  frameAspect: number,
+  aspect: number,
+  covered: number,
+): CameraPose {
   const { rightward, distance } = basis(camera);
   const vertical = Math.tan((camera.vertical_fov * Math.PI) / 360);
   const sine = (horizontal: number): number => Math.sin(Math.atan(Math.min(vertical, horizontal)));
-  const factor = sine(vertical * aspect) / sine(vertical * aspect * (1 - covered));
+  const shown = vertical * Math.min(aspect, frameAspect);
+  const factor = sine(vertical * frameAspect) / sine(shown * (1 - covered));
   const backward = normalize(subtract(camera.eye, camera.target));
-  const shift = scale(rightward, covered * distance * factor * vertical * aspect);
+  const shift = scale(rightward, covered * distance * factor * shown);
   const target = add(camera.target, shift);
   return { ...camera, eye: add(target, scale(backward, distance * factor)), target, name: null };
 }
@@ -191,12 +198,4 @@ function headingOf(camera: CameraPose, offset: Vector3): number {
   // Seen from straight above or below, the camera's up vector gives the direction.
   const behind = scale(camera.up, offset[1] > 0 ? -1 : 1);
   return Math.atan2(behind[0], behind[2]);
-}
-
-function basis(camera: CameraPose): { rightward: Vector3; upward: Vector3; distance: number } {
-  const toTarget = subtract(camera.target, camera.eye);
-  const forward = normalize(toTarget);
-  let rightward = normalize(cross(forward, camera.up));
-  if (dot(rightward, rightward) === 0) rightward = [1, 0, 0];
-  return { rightward, upward: cross(rightward, forward), distance: length(toTarget) };
 }

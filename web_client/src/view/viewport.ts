@@ -33,6 +33,23 @@ export function frameSize(
   };
 }
 
+/**
+ * Where a point of the view lies in the frame, both in fractions of width and height: the view shows
+ * the middle of frames of another shape.
+ */
+export function pointInFrame(
+  view: { width: number; height: number },
+  frame: FrameSize,
+  x: number,
+  y: number,
+): { x: number; y: number } {
+  const shape = (frame.height * view.width) / (frame.width * view.height);
+  return {
+    x: 0.5 + (x - 0.5) * Math.min(1, shape),
+    y: 0.5 + (y - 0.5) * Math.min(1, 1 / shape),
+  };
+}
+
 /** Reports changes of the element's size and the screen's pixel ratio. */
 export function watchSize(element: HTMLElement, changed: () => void): void {
   new ResizeObserver(changed).observe(element);

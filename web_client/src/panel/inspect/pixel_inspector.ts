@@ -28,7 +28,7 @@ export function createInspector(viewer: Viewer, picker: PointPicker): HTMLElemen
     picker.mark(x, y);
     setText(position, "Reading the pixel values");
     try {
-      show(await viewer.rpc.request("frame.inspect", { x, y }));
+      show(await viewer.queries.inspect(x, y));
     } catch (error) {
       viewer.report(error);
     }

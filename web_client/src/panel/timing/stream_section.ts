@@ -57,6 +57,7 @@ export function createStreamSection(viewer: Viewer): {
     field("Resolution", sizes),
     field("Quality", qualityPicker(viewer)),
     codecField(viewer),
+    field("Smooth motion", reprojectionSwitch(viewer)),
   );
   return { node, resolution };
 }
@@ -83,6 +84,25 @@ function qualityPicker(viewer: Viewer): HTMLSelectElement {
     if (nearest) select.value = String(nearest[0]);
   });
   return select;
+}
+
+function reprojectionSwitch(viewer: Viewer): HTMLInputElement {
+  const box = element("input", {
+    type: "checkbox",
+    role: "switch",
+    class: "switch",
+    name: "reprojection",
+    "data-tip": "Between frames of the server, the last one is shown from the new camera.",
+    change: () => {
+      preferences.setFlag("reprojection", box.checked);
+      viewer.stream.request({ depth: box.checked });
+    },
+  });
+  if (!preferences.flag("reprojection", true)) viewer.stream.request({ depth: false });
+  viewer.stream.settings.watch((stream) => {
+    if (stream) box.checked = stream.depth;
+  });
+  return box;
 }
 
 /** Hidden where server and browser have only one codec in common. */

@@ -12,9 +12,18 @@ const idleAfterMs = 1200;
 
 export function createTimingTab(viewer: Viewer, streamFields: HTMLElement): HTMLElement {
   const rate = figure("Frame rate", "Frames drawn per second. A converged view sends no frames.");
+  const shown = figure(
+    "View rate",
+    "Images shown per second: frames, and the last frame as seen from the camera since.",
+  );
   const latency = figure(
     "Latency",
-    "From moving the camera to drawing the first frame that shows it.",
+    "From moving the camera to drawing the first frame of the server that shows it.",
+  );
+  const response = figure(
+    "Response",
+    "From moving the camera to drawing the first image that shows it: often the last frame as " +
+      "seen from the new camera.",
   );
   const bandwidth = figure("Bandwidth", "Data rate of the stream.");
   const size = figure("Frame size", "Pixels that the server renders and sends.");
@@ -36,12 +45,16 @@ export function createTimingTab(viewer: Viewer, streamFields: HTMLElement): HTML
     const median = viewer.latency.median;
     setText(rate.value, idle ? (frame ? idleText : "–") : `${formatRate(fps)} fps`);
     setText(latency.value, median === null ? "–" : `${median.toFixed(0)} ms`);
+    const first = viewer.responses.median;
+    setText(response.value, first === null ? "–" : `${first.toFixed(0)} ms`);
+    const shownFps = viewer.shownRates.read(now).fps;
+    setText(shown.value, shownFps > 0 ? `${formatRate(shownFps)} fps` : "–");
     const bytes = formatBandwidth(idle ? 0 : bytesPerSecond);
     setText(bandwidth.value, frame ? bytes : "–");
     setText(size.value, frame ? `${frame.width} × ${frame.height}` : "–");
     setText(samples.value, frame ? String(frame.samples) : "–");
     setText(quality.value, frame ? String(frame.quality) : "–");
-    setText(scale.value, frame ? `${Math.round(100 * shownScale(frame.width))} %` : "–");
+    setText(scale.value, frame ? `${Math.round(100 * shownScale(frame))} %` : "–");
     setText(decode.value, frame ? `${frame.decodeMs.toFixed(1)} ms` : "–");
   };
   setInterval(refresh, refreshMs);
@@ -59,7 +72,7 @@ export function createTimingTab(viewer: Viewer, streamFields: HTMLElement): HTML
     }
   });
   const figures = element("dl", { class: "figures" });
-  const all = [rate, latency, frameTime, bandwidth, size, samples, quality, scale, decode];
+  const all = [rate, shown, latency, response, frameTime, bandwidth, size, samples, quality, scale, decode];
   figures.append(...all.map(({ node }) => node));
   const body = element("div", { class: "section-body" }, figures, chart.node, table.node, device);
   return element(
@@ -70,9 +83,9 @@ export function createTimingTab(viewer: Viewer, streamFields: HTMLElement): HTML
   );
 }
 
-/** Sent pixels per device pixel, along the width of the view. */
-function shownScale(width: number): number {
-  return width / Math.max(1, innerWidth * devicePixelRatio);
+/** Sent pixels per device pixel; the frame covers the view. */
+function shownScale({ width, height }: { width: number; height: number }): number {
+  return Math.min(width / innerWidth, height / innerHeight) / devicePixelRatio;
 }
 
 function figure(label: string, help: string): { node: HTMLElement; value: HTMLElement } {
