@@ -13,7 +13,7 @@ import { createPartFields } from "./part_fields.ts";
 import { createScenePicker } from "./scene_picker.ts";
 
 /** Groups of settings that are shown here instead of in the Settings tab. */
-export const appearanceGroups = ["exposure", "tone_map", "environment"];
+export const appearanceGroups = ["exposure", "tone_map", "environment", "background"];
 
 export function createSceneTab(viewer: Viewer, upload: (file: File) => void): HTMLElement {
   const facts = element("p", { class: "facts" });
