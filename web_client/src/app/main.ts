@@ -3,6 +3,8 @@
 import { Comparison } from "../compare/comparison.ts";
 import { fileStem, outputActions } from "../output/output_actions.ts";
 import { createSaveDialog } from "../output/save_dialog.ts";
+import { createEmbedDialog } from "../output/embed_dialog.ts";
+import { reportToEmbeddingPage } from "../embed/embedding_page.ts";
 import { createHelp } from "../overlay/help.ts";
 import { mountMjpegFallback } from "../overlay/mjpeg_fallback.ts";
 import { mountParticipants } from "../overlay/participants.ts";
@@ -91,11 +93,13 @@ function main(): void {
     fileStem: () => fileStem(viewer),
     inform,
   });
+  const embedDialog = createEmbedDialog(find<HTMLDialogElement>("embed"), viewer, inform);
   const help = createHelp(find<HTMLDialogElement>("help"));
   const panel = mountPanel(find("panel"), viewer, {
     output: outputActions(viewer, {
       recordingButton: find("recording"),
       save: saveDialog.open,
+      embed: embedDialog.open,
       inform,
     }),
     inspect: {
@@ -160,6 +164,7 @@ function main(): void {
   addEventListener("hashchange", openLink);
   openLink();
   mountThumbnails(viewer);
+  reportToEmbeddingPage(viewer);
   mountUpload(viewer, document.body, toasts);
   viewer.connection.open();
 }

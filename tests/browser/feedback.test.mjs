@@ -1,0 +1,69 @@
+// What the page tells without being asked: refinement, gestures, tooltips, the list of buffers.
+
+import assert from "node:assert/strict";
+import { eventually, openTab, screenshot, settle } from "./harness/browser.mjs";
+import { Stage } from "./harness/stage.mjs";
+
+const stage = new Stage({ view: { viewport: { width: 960, height: 540 } } });
+
+stage.test("a static view says how far it is refined, and nothing once it has converged", async () => {
+  const { page } = await stage.watch();
+  const indicator = page.locator("#refining");
+  await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 4096 } } });
+  await stage.server.call("camera.orbit", { yaw: 10, pitch: 0 });
+  await indicator.getByText(/^\d+ of 4096 samples$/).waitFor();
+  await screenshot(page, "refining");
+  const counted = async () => Number.parseInt(await indicator.textContent(), 10);
+  const before = await counted();
+  await eventually(async () => (await counted()) > before, "more samples");
+  await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 16 } } });
+  await indicator.waitFor({ state: "hidden" });
+});
+
+stage.test("on a touch screen the help begins with gestures, elsewhere with the mouse", async () => {
+  for (const [hasTouch, first] of [
+    [true, "Touch"],
+    [false, "Mouse"],
+  ]) {
+    const touch = { hasTouch, isMobile: hasTouch, viewport: { width: 390, height: 844 } };
+    const { page } = await stage.watch(hasTouch ? touch : {});
+    await page.keyboard.press("?");
+    const titles = page.locator("#help h2");
+    await titles.first().waitFor();
+    assert.equal(await titles.first().textContent(), first);
+    await screenshot(page, `help_${first.toLowerCase()}`);
+  }
+});
+
+stage.test("a tooltip goes with what it explains, and with Escape", async () => {
+  const { page } = await stage.watch();
+  const tip = page.getByRole("tooltip");
+  const help = page.getByRole("button", { name: "Help (?)" });
+  await help.hover();
+  await tip.getByText("Help (?)").waitFor();
+  await page.evaluate(() => (document.querySelector("#panel").hidden = true));
+  await tip.waitFor({ state: "hidden" });
+  await page.evaluate(() => (document.querySelector("#panel").hidden = false));
+  await page.mouse.move(10, 10);
+  await help.hover();
+  await tip.getByText("Help (?)").waitFor();
+  await page.keyboard.press("Escape");
+  await tip.waitFor({ state: "hidden" });
+});
+
+stage.test("the list of buffers follows the settings", async () => {
+  const { page } = await stage.watch();
+  await settle(page, stage.server);
+  await openTab(page, "inspect");
+  const names = () =>
+    page
+      .locator("select[name=buffer] option")
+      .evaluateAll((options) => options.map(({ value }) => value));
+  const reflections = async () => (await names()).some((name) => name.startsWith("specular."));
+  assert.ok(await reflections());
+  // By another client, and by this page.
+  await stage.server.call("settings.patch", { patch: { specular: { enabled: false } } });
+  await eventually(async () => !(await reflections()), "a list without reflections");
+  await stage.server.call("settings.patch", { patch: { specular: { enabled: true } } });
+  await eventually(reflections, "a list with reflections");
+});
