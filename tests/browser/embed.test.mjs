@@ -1,12 +1,16 @@
-// The viewer in pages of other origins: the copied code, the web component, what is not allowed.
+// The viewer in pages of other origins (the copied code, the web component, what is not allowed) and
+// in notebooks.
 
 import assert from "node:assert/strict";
-import { writeFileSync } from "node:fs";
+import { spawn, spawnSync } from "node:child_process";
+import { readFileSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
-import { join } from "node:path";
+import { dirname, join } from "node:path";
+import { createInterface } from "node:readline";
+import { fileURLToPath } from "node:url";
 import { after } from "node:test";
 import { seriousFindings } from "./harness/axe.mjs";
-import { chooseOutput, eventually, screenshot } from "./harness/browser.mjs";
+import { chooseOutput, dragView, eventually, screenshot } from "./harness/browser.mjs";
 import { outputFolder } from "./harness/environment.mjs";
 import { Stage } from "./harness/stage.mjs";
 
@@ -27,7 +31,7 @@ async function otherSite(html) {
   return site;
 }
 
-const page = ({ html }) => `<!doctype html><title>Another site</title><h1>Embedded viewer</h1>${html}`;
+const page = ({ html }) => `<!doctype html><html lang="en"><title>Another site</title><h1>Embedded viewer</h1>${html}`;
 const [allowed, other] = await Promise.all([otherSite(page), otherSite(page)]);
 after(() => [allowed, other].forEach((site) => site.close()));
 const embedded = new Stage({
@@ -135,4 +139,63 @@ embedded.test("the web component says when a server does not allow its page", as
     headers: { origin: other.origin },
   });
   assert.equal(refused.status, 403);
+});
+
+const here = dirname(fileURLToPath(import.meta.url));
+const library = join(here, "../../protocol/python");
+const python = "/usr/bin/python3";
+
+embedded.test("the notebook's module shows frames and moves the camera", async (t) => {
+  if (spawnSync(python, ["-c", "import websockets"]).status !== 0) {
+    t.skip("python3-websockets is not installed");
+    return;
+  }
+  const script = join(here, "harness/notebook_kernel.py");
+  const kernel = spawn(python, [script, embedded.server.url], {
+    env: { ...process.env, PYTHONPATH: library },
+    stdio: ["pipe", "pipe", "inherit"],
+  });
+  t.after(() => kernel.kill());
+  const notebook = await (await embedded.context(guestView)).newPage();
+  await notebook.exposeFunction("toKernel", (text) => kernel.stdin.write(`${text}\n`));
+  allowed.script = readFileSync(join(library, "heliograph/notebook.js"), "utf8");
+  allowed.html = `<main id="cell"></main><script type="module">
+    import widget from "./viewer.js";
+    const traits = { session: "main", frame: new DataView(new ArrayBuffer(0)) };
+    let changed = () => {};
+    const model = {
+      get: (name) => traits[name],
+      on: (event, callback) => (changed = callback),
+      off: () => (changed = () => {}),
+      send: (message) => window.toKernel(JSON.stringify(message)),
+    };
+    window.fromKernel = (base64) => {
+      const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
+      traits.frame = new DataView(bytes.buffer);
+      changed();
+    };
+    window.close = widget.render({ model, el: document.querySelector("#cell") });
+    window.loaded = true;
+  </script>`;
+  await notebook.goto(allowed.origin);
+  await notebook.waitForFunction(() => window.loaded);
+  createInterface({ input: kernel.stdout }).on("line", (base64) => {
+    void notebook.evaluate((text) => window.fromKernel(text), base64).catch(() => {});
+  });
+  const image = notebook.getByRole("img", { name: "Rendered scene of the session main" });
+  await notebook.waitForFunction(() => document.querySelector("#cell img").naturalWidth > 0);
+  await screenshot(notebook, "notebook");
+  assert.deepEqual(await seriousFindings(notebook), []);
+  const eye = async () => String((await embedded.server.call("camera.get")).eye);
+  const moves = async (action, what) => {
+    const before = await eye();
+    await action();
+    await eventually(async () => (await eye()) !== before, what);
+  };
+  const { x, y } = await image.boundingBox();
+  await moves(() => dragView(notebook, { x: x + 60, y: y + 60 }, { x: x + 160, y: y + 80 }), "a drag");
+  await image.focus();
+  await moves(() => notebook.keyboard.press("ArrowLeft"), "an arrow key");
+  await moves(() => notebook.mouse.wheel(0, 120), "the wheel");
+  await moves(() => notebook.keyboard.press("f"), "fitting");
 });

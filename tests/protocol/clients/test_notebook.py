@@ -48,7 +48,7 @@ class NotebookViews(ServerTestCase):
             live = LiveFrames(heliograph.connect(self.server.url), frames.append)
             try:
                 eventually(lambda: frames)
-                self.assertGreater(decode_jpeg(frames[0].data).size, 0)
+                self.assertGreater(decode_jpeg(frames[0].data).width, 0)
                 before, count = view.camera.get(), len(frames)
                 live.receive({"kind": "orbit", "yaw": 30, "pitch": 0})
                 turned = view.camera.get()
@@ -81,7 +81,7 @@ class NotebookViews(ServerTestCase):
         run = subprocess.run([sys.executable, "-c", WITHOUT_PACKAGES, self.server.url],
                              env=environment, capture_output=True, timeout=120, check=False)
         self.assertEqual(run.returncode, 0, run.stderr.decode())
-        self.assertGreater(decode_png(run.stdout).size, 0)
+        self.assertGreater(decode_png(run.stdout).width, 0)
 
 
 if __name__ == "__main__":
