@@ -74,7 +74,7 @@ struct FieldDescription {
 };
 
 /// In the order of visit_members().
-constexpr auto descriptions = std::to_array<FieldDescription>({
+constexpr auto field_descriptions = std::to_array<FieldDescription>({
     {"version", "1"},
     {"type", "1 frame, 2 tile, 3 buffer, 4 timing"},
     {"codec", "1 JPEG, 2 PNG, 3 WebP, 16 H.264, 17 AV1, 32 raw RGBA, 33 EXR"},
@@ -148,7 +148,7 @@ std::vector<FrameHeaderField> frame_header_fields() {
   std::size_t offset = magic.size();
   const FrameHeader header;
   visit_members(header, [&](const auto& member) {
-    const FieldDescription& description = descriptions[fields.size() - 1];
+    const FieldDescription& description = field_descriptions[fields.size() - 1];
     fields.push_back({description.name, offset, sizeof(member), description.meaning});
     offset += sizeof(member);
   });

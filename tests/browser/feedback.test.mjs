@@ -67,3 +67,38 @@ stage.test("the list of buffers follows the settings", async () => {
   await stage.server.call("settings.patch", { patch: { specular: { enabled: true } } });
   await eventually(reflections, "a list with reflections");
 });
+
+stage.test("the first visit tells how to move, until the view is moved", async () => {
+  const context = await stage.context();
+  const { page } = await stage.watch({ context });
+  const hint = page.getByText(/^Drag to orbit, wheel to zoom/);
+  await hint.waitFor();
+  await screenshot(page, "first_hint");
+  await page.locator("#view").focus();
+  await page.keyboard.press("ArrowLeft", { delay: 50 });
+  await hint.waitFor({ state: "hidden" });
+  const { page: again } = await stage.watch({ context });
+  assert.equal(await again.getByText(/^Drag to orbit/).count(), 0);
+});
+
+stage.test("quality is the first control: draft, balanced or best", async () => {
+  await stage.server.call("settings.patch", { patch: { accumulation: null } });
+  const { page } = await stage.watch();
+  const quality = page.getByRole("group", { name: "Quality" });
+  const pressed = () =>
+    quality.locator("[aria-pressed=true]").evaluateAll((all) => all.map((one) => one.textContent));
+  assert.deepEqual(await pressed(), ["Balanced"]);
+  const first = page.locator("#page-scene .field").first();
+  assert.ok(await first.getByText("Quality").isVisible(), "it is not the first");
+  await quality.getByRole("button", { name: "Draft" }).click();
+  await eventually(
+    async () => (await stage.server.setting("accumulation.max_samples")) === 8,
+    "few samples",
+  );
+  assert.equal(await stage.server.setting("indirect.enabled"), false);
+  assert.deepEqual(await pressed(), ["Draft"]);
+  await screenshot(page, "quality");
+  await quality.getByRole("button", { name: "Balanced" }).click();
+  await eventually(async () => await stage.server.setting("indirect.enabled"), "indirect light");
+  assert.deepEqual(await pressed(), ["Balanced"]);
+});

@@ -5,6 +5,7 @@ import { fileStem, outputActions } from "../output/output_actions.ts";
 import { createSaveDialog } from "../output/save_dialog.ts";
 import { createEmbedDialog } from "../output/embed_dialog.ts";
 import { reportToEmbeddingPage } from "../embed/embedding_page.ts";
+import { mountFirstHint } from "../overlay/first_hint.ts";
 import { createHelp } from "../overlay/help.ts";
 import { mountMjpegFallback } from "../overlay/mjpeg_fallback.ts";
 import { mountParticipants } from "../overlay/participants.ts";
@@ -114,6 +115,7 @@ function main(): void {
   mountTransport(viewer, find("transport"));
   mountStatus(viewer, find("pill"), find("notice"));
   mountRefining(viewer, find("refining"));
+  mountFirstHint(viewer, canvas, find("first-hint"));
   mountTooltips();
 
   viewer.stream.chooseSize = ({ limits, device }) => {
