@@ -32,7 +32,7 @@ async function choose(page, kind) {
 stage.test("the background is a color, a gradient or the blurred environment", async () => {
   const { page } = await stage.watch();
   // The sky alone.
-  await stage.server.call("camera.set", { eye: [0, 50, 0], target: [10, 50.5, 0] });
+  await stage.server.call("camera.set", { eye: [0, 50, 0], target: [10, 51, 0], up: [0, 1, 0] });
   await stage.server.call("settings.patch", { patch: { tone_map: { curve: "linear" } } });
   await unfoldAll(page);
   await choose(page, "color");

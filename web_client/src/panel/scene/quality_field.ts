@@ -30,6 +30,6 @@ export function createQualityField(viewer: Viewer): HTMLElement {
     "div",
     { class: "field" },
     element("span", { class: "row-label" }, "Quality"),
-    element("div", { class: "chips", role: "group", "aria-label": "Quality" }, ...choices),
+    element("div", { class: "chips quality", role: "group", "aria-label": "Quality" }, ...choices),
   );
 }
