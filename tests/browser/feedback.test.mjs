@@ -16,7 +16,7 @@ stage.test("a static view says how far it is refined, and nothing once it has co
   const counted = async () => Number.parseInt(await indicator.textContent(), 10);
   const before = await counted();
   await eventually(async () => (await counted()) > before, "more samples");
-  await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 16 } } });
+  await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 2 } } });
   await indicator.waitFor({ state: "hidden" });
 });
 

@@ -25,6 +25,8 @@ using File = std::vector<std::uint8_t>;
 /// As many steps as edges have.
 constexpr std::uint32_t coverage_samples = 32;
 
+constexpr std::size_t radiance_channels = 4;
+
 /// Settings in which only the background sends light.
 json without_light(const char* background) {
   const json off{{"enabled", false}};
@@ -60,7 +62,7 @@ std::span<const std::uint8_t> values_of(const File& npy) {
 
 float green(std::span<const std::uint8_t> pixels, std::size_t pixel) {
   float value = 0.0f;
-  std::memcpy(&value, &pixels[(3 * pixel + 1) * sizeof(float)], sizeof value);
+  std::memcpy(&value, &pixels[(radiance_channels * pixel + 1) * sizeof(float)], sizeof value);
   return value;
 }
 
@@ -95,7 +97,7 @@ std::optional<File> combine_transparent(const File& colors, const File& over_whi
   if (!size || size_of(over_white) != size || size_of(over_black) != size) return std::nullopt;
   const std::size_t pixels = std::size_t{size->first} * size->second;
   const auto rgb = values_of(colors), white = values_of(over_white), black = values_of(over_black);
-  const std::size_t floats = 3 * pixels * sizeof(float);
+  const std::size_t floats = radiance_channels * pixels * sizeof(float);
   if (rgb.size() != 3 * pixels || white.size() != floats || black.size() != floats) {
     return std::nullopt;
   }
