@@ -1,10 +1,10 @@
 // What the page tells without being asked: refinement, gestures, tooltips, the list of buffers.
 
 import assert from "node:assert/strict";
-import { eventually, openTab, screenshot, settle } from "./harness/browser.mjs";
+import { eventually, openTab, screenshot } from "./harness/browser.mjs";
 import { Stage } from "./harness/stage.mjs";
 
-const stage = new Stage({ view: { viewport: { width: 960, height: 540 } } });
+const stage = new Stage({ scene: "mirror", view: { viewport: { width: 720, height: 405 } } });
 
 stage.test("a static view says how far it is refined, and nothing once it has converged", async () => {
   const { page } = await stage.watch();
@@ -53,7 +53,6 @@ stage.test("a tooltip goes with what it explains, and with Escape", async () => 
 
 stage.test("the list of buffers follows the settings", async () => {
   const { page } = await stage.watch();
-  await settle(page, stage.server);
   await openTab(page, "inspect");
   const names = () =>
     page
