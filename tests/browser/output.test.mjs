@@ -139,7 +139,7 @@ stage.test("an image is saved without its background", async () => {
   const { page } = await stage.watch();
   await settle(page, stage.server);
   const dialog = await openSave(page);
-  await dialog.getByLabel("No background").check();
+  await dialog.getByLabel("Transparent").check();
   await screenshot(page, "save_transparent");
   assert.deepEqual(await seriousFindings(page), []);
   const png = await downloaded(page, () =>
@@ -161,7 +161,7 @@ stage.test("an image is saved without its background", async () => {
   assert.ok(alphas.clear + alphas.opaque > 0.9, "hardly any pixel is at an edge");
   // Other formats have no alpha.
   const again = await openSave(page, { format: "jpeg" });
-  assert.equal(await again.getByLabel("No background").isVisible(), false);
+  assert.equal(await again.getByLabel("Transparent").isVisible(), false);
 });
 
 stage.test("the copied image is in the clipboard", async () => {

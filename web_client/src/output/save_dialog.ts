@@ -45,7 +45,7 @@ export function createSaveDialog(
     class: "switch",
     name: "transparent",
   });
-  const background = field("No background", transparent);
+  const background = field("Transparent", transparent);
   const bar = element("div", { class: "bar" });
   const progress = element(
     "div",
