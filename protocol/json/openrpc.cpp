@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "protocol/messages/frame_header.hpp"
 #include "protocol/messages/session_messages.hpp"
 #include "protocol/methods.hpp"
 #include "protocol/result.hpp"
@@ -63,6 +64,17 @@ json error_data_schema() {
             {"reason", text("What is wrong with it.")},
             {"limit", text("The valid values.")}}},
           {"required", {"path", "reason"}}};
+}
+
+json frame_header() {
+  json fields = json::array();
+  for (const FrameHeaderField& field : frame_header_fields()) {
+    fields.push_back({{"name", field.name},
+                      {"offset", field.offset},
+                      {"bytes", field.bytes},
+                      {"description", field.meaning}});
+  }
+  return fields;
 }
 
 /// OpenRPC lists parameters individually; here they are the members of the params object.
@@ -134,6 +146,7 @@ RawJson openrpc_document() {
       {"servers", json::array({{{"name", "this server"}, {"url", "/rpc"}}})},
       {"methods", json::array()},
       {"x-notifications", json::array()},
+      {"x-frame-header", frame_header()},
       {"components",
        {{"errors", errors_component()}, {"schemas", {{"ErrorData", error_data_schema()}}}}}};
   for (const MethodDescriptor& method : method_table()) {

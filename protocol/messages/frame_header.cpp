@@ -68,6 +68,36 @@ void visit_members(Header& header, Visitor&& visit) {
   visit(header.sample_count);
 }
 
+struct FieldDescription {
+  std::string_view name;
+  std::string_view meaning;
+};
+
+/// In the order of visit_members().
+constexpr auto field_descriptions = std::to_array<FieldDescription>({
+    {"version", "1"},
+    {"type", "1 frame, 2 tile, 3 buffer, 4 timing"},
+    {"codec", "1 JPEG, 2 PNG, 3 WebP, 16 H.264, 17 AV1, 32 raw RGBA, 33 EXR"},
+    {"flags", "1 key, 2 final, 4 first after a drop, 8 discontinuity"},
+    {"header_bytes", "where the payload begins: 64 or more"},
+    {"quality", "in the codec's units"},
+    {"frame_seq", "counts per viewer; gaps are dropped frames"},
+    {"render_id", "counts per session; equal values mean the same frame"},
+    {"input_seq_echo", "newest seq of camera.set that this frame shows"},
+    {"state_rev", "revision of the session that was rendered"},
+    {"width", "of the payload, pixels"},
+    {"height", "of the payload, pixels"},
+    {"x", "of a tile in the full frame, pixels from the left"},
+    {"y", "of a tile in the full frame, pixels from the top"},
+    {"full_width", "of the full frame, pixels"},
+    {"full_height", "of the full frame, pixels"},
+    {"render_start_us", "server's monotonic clock at the start of rendering, microseconds"},
+    {"render_us", "duration of rendering, microseconds"},
+    {"encode_us", "duration of encoding, microseconds"},
+    {"queue_us", "from the end of encoding to the start of writing, microseconds"},
+    {"sample_count", "accumulated samples per pixel; 0: raster only"},
+});
+
 bool known(FrameType type) {
   return type >= FrameType::frame && type <= FrameType::timing;
 }
@@ -111,6 +141,18 @@ std::array<std::uint8_t, frame_header_bytes> encode_frame_header(const FrameHead
   Writer writer{std::span(bytes).subspan(magic.size())};
   visit_members(header, [&](const auto& member) { writer.put(member); });
   return bytes;
+}
+
+std::vector<FrameHeaderField> frame_header_fields() {
+  std::vector<FrameHeaderField> fields{{"magic", 0, magic.size(), "the letters HVRF"}};
+  std::size_t offset = magic.size();
+  const FrameHeader header;
+  visit_members(header, [&](const auto& member) {
+    const FieldDescription& description = field_descriptions[fields.size() - 1];
+    fields.push_back({description.name, offset, sizeof(member), description.meaning});
+    offset += sizeof(member);
+  });
+  return fields;
 }
 
 Result<FrameHeader> decode_frame_header(std::span<const std::uint8_t> message) {

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
+#include <vector>
 
 #include "protocol/result.hpp"
 
@@ -68,5 +70,16 @@ std::array<std::uint8_t, frame_header_bytes> encode_frame_header(const FrameHead
 /// or codec, a payload offset outside the message, or an image that is empty or exceeds its full
 /// size.
 Result<FrameHeader> decode_frame_header(std::span<const std::uint8_t> message);
+
+/// A field of the header, for documents.
+struct FrameHeaderField {
+  std::string_view name;
+  std::size_t offset = 0;
+  std::size_t bytes = 0;
+  std::string_view meaning;
+};
+
+/// All fields in wire order, the magic bytes first.
+std::vector<FrameHeaderField> frame_header_fields();
 
 }  // namespace heliograph::protocol

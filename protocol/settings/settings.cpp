@@ -34,6 +34,9 @@ SettingDescriptor describe(std::string_view path, std::string_view group, std::s
     result.type = SettingType::choice;
     result.initial = std::string(enum_name(initial));
     result.choices = enum_names<Value>();
+  } else if constexpr (std::is_same_v<Value, Color>) {
+    result.type = SettingType::color;
+    result.initial = color_text(initial);
   } else {
     if constexpr (std::is_same_v<Value, int>) result.type = SettingType::integer;
     if constexpr (std::is_same_v<Value, float>) result.type = SettingType::number;

@@ -10,6 +10,7 @@
 
 #include "protocol/json/enum_names.hpp"
 #include "protocol/result.hpp"
+#include "protocol/settings/color.hpp"
 
 namespace heliograph::protocol {
 
@@ -66,7 +67,7 @@ constexpr bool includes(ResetScope scope, ResetScope part) {
   return (static_cast<std::uint32_t>(scope) & bits) == bits;
 }
 
-enum class SettingType { boolean, integer, number, choice, text };
+enum class SettingType { boolean, integer, number, choice, text, color };
 
 /// Range of a number, or of the number of characters of a text. Both ends are allowed.
 struct SettingLimits {
@@ -80,7 +81,7 @@ struct SettingDescriptor {
   std::string_view group;  ///< "tone_map"
   std::string_view name;   ///< "curve"
   SettingType type;
-  std::variant<bool, int, float, std::string> initial;  ///< of a choice: its name
+  std::variant<bool, int, float, std::string> initial;  ///< of choices and colors: text
   SettingLimits limits;                                 ///< of integers, numbers and texts
   std::span<const std::string_view> choices;            ///< of choices; otherwise empty
   std::string_view unit;                                ///< empty: dimensionless
@@ -103,7 +104,7 @@ const SettingDescriptor* find_setting(std::string_view path);
 std::vector<std::string_view> scope_names(ResetScope scope);
 
 /// Calls `visitor(descriptor, value)` for every setting in order; `value` is a reference to the
-/// member (bool, int, float, std::string or an enum class), const if `settings` is.
+/// member (bool, int, float, std::string, Color or an enum class), const if `settings` is.
 template <class SettingsType, class Visitor>
 void visit_settings(SettingsType& settings, Visitor&& visitor) {
   const SettingDescriptor* descriptor = setting_descriptors().data();

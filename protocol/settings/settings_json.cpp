@@ -26,6 +26,9 @@ json json_of(float value) {
 json json_of(const std::string& value) {
   return value;
 }
+json json_of(Color value) {
+  return color_text(value);
+}
 template <class Enum>
 requires std::is_enum_v<Enum> json json_of(Enum value) {
   return enum_name(value);
@@ -85,6 +88,17 @@ Result<void> read(const json& value, const SettingDescriptor& setting, std::stri
                           range_text(range_of(setting)) + " characters of A-Z a-z 0-9 _ . -");
   }
   out = *text;
+  return {};
+}
+
+Result<void> read(const json& value, const SettingDescriptor& setting, Color& out) {
+  const Result<std::string> text = read_text(value, std::string(setting.path));
+  if (!text) return text.error();
+  const std::optional<Color> color = parse_color(*text);
+  if (!color) {
+    return error::invalid(std::string(setting.path), "is not a color", "#rrggbb, hexadecimal");
+  }
+  out = *color;
   return {};
 }
 
@@ -178,6 +192,11 @@ json schema_of_leaf(const SettingDescriptor& setting, std::size_t order) {
     case SettingType::text:
       numbers("string", "minLength", "maxLength");
       leaf["pattern"] = "^[A-Za-z0-9_.-]+$";
+      break;
+    case SettingType::color:
+      leaf["type"] = "string";
+      leaf["format"] = "color";
+      leaf["pattern"] = "^#?[0-9A-Fa-f]{6}$";
       break;
   }
   return leaf;

@@ -31,6 +31,8 @@ std::string values_text(const SettingDescriptor& setting) {
       return choices_text(setting.choices);
     case SettingType::text:
       return "name of " + range + " characters";
+    case SettingType::color:
+      return "#rrggbb";
   }
   return {};
 }

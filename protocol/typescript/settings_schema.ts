@@ -60,6 +60,10 @@ export interface ChoiceControl extends ControlBase {
 export interface TextControl extends ControlBase {
   kind: "text";
 }
+/** "#rrggbb" */
+export interface ColorControl extends ControlBase {
+  kind: "color";
+}
 /** A type without a widget: edited as JSON text. */
 export interface JsonControl extends ControlBase {
   kind: "json";
@@ -72,6 +76,7 @@ export type Control =
   | VectorControl
   | ChoiceControl
   | TextControl
+  | ColorControl
   | JsonControl;
 
 export interface ControlGroup {
@@ -161,7 +166,7 @@ function describeControl(node: JsonObject, path: string, label: string, order: n
     return { ...base, kind: "choice", options };
   }
   if (type === "boolean") return { ...base, kind: "toggle" };
-  if (type === "string") return { ...base, kind: "text" };
+  if (type === "string") return { ...base, kind: node.format === "color" ? "color" : "text" };
   if (type === "number" || type === "integer") return describeNumber(base, node, type);
   if (type === "array") {
     const items = isObject(node.items) ? node.items : {};

@@ -15,6 +15,7 @@
 #include "protocol/limits.hpp"
 #include "render/api/renderer.hpp"
 #include "scene/import.hpp"
+#include "scene/studio.hpp"
 #include "session/library/environment_source.hpp"
 #include "session/rendering/capture_content.hpp"
 
@@ -39,8 +40,8 @@ std::shared_ptr<const scene::Environment> environment_of(const RenderJob& job,
                                                          const fs::path& file) {
   if (job.environment) return job.environment;
   const auto beside = session::environment_beside(file, file.parent_path());
-  return std::make_shared<const scene::Environment>(
-      beside ? scene::load_environment(*beside) : scene::constant_environment(glm::vec3(1.0f)));
+  return std::make_shared<const scene::Environment>(beside ? scene::load_environment(*beside)
+                                                           : scene::studio_environment());
 }
 
 /// Whether the file can be written; a file that does not exist does not exist afterwards either.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "protocol/limits.hpp"
+#include "session/rendering/transparent_snapshot.hpp"
 
 namespace heliograph::session {
 
@@ -75,7 +76,10 @@ Result<void> request_snapshot(SessionHost& host, const std::shared_ptr<Session>&
     done(std::move(result));
   };
   Result<void> accepted = apply_view(*copy, view);
-  if (accepted) accepted = copy->captures().request_capture(std::move(capture));
+  if (accepted) {
+    accepted = view.transparent ? request_transparent_capture(copy, std::move(capture))
+                                : copy->captures().request_capture(std::move(capture));
+  }
   if (!accepted) end_copy(host, *copy);
   return accepted;
 }

@@ -15,8 +15,11 @@ struct SnapshotView {
   std::optional<std::string> camera;  ///< name or number, as in camera.set
   bool fit = false;                   ///< shows the whole scene, as camera.fit does
   std::optional<bool> background;     ///< instead of environment.visible
+  bool transparent = false;           ///< a PNG file without background
 
-  bool as_shown() const { return !width && !height && !camera && !fit && !background; }
+  bool as_shown() const {
+    return !width && !height && !camera && !fit && !background && !transparent;
+  }
 };
 
 /// Captures an image of a session. One that differs is rendered in a session of its own, a copy

@@ -50,10 +50,11 @@ struct FrameConstants {
   float directional_light_radius;  // tangent of the angular radius of all, -1: each has its own
   float texture_footprint;         // of a pixel, pixels: less where frames are drawn smaller
 
-  vec4 irradiance[9];   // spherical harmonics of the irradiance / pi, rgb
-  vec3 sun_direction;   // toward the environment's sun, world
-  float sun_radius;     // tangent of its angular radius, -1: there is none
-  vec4 sun_irradiance;  // rgb, on a surface facing it
+  vec4 irradiance[9];          // spherical harmonics of the irradiance / pi, rgb
+  vec3 sun_direction;          // toward the environment's sun, world
+  float sun_radius;            // tangent of its angular radius, -1: there is none
+  vec3 sun_irradiance;         // on a surface facing it
+  float background_intensity;  // factor on the map of what is seen behind the scene
 };
 
 SHARED_END

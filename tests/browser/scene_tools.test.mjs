@@ -90,12 +90,16 @@ stage.test("a click lists the value of every buffer at a pixel", async (t) => {
   await page.locator(".pixel-values dd").first().waitFor({ timeout: 60_000 });
   const { buffers } = await stage.server.call("frame.inspect", { x: 0.3, y: 600 / 900 });
   const shown = await page
-    .locator(".pixel-values dd")
+    .locator(".pixel-values dd[data-value]")
     .evaluateAll((nodes) => nodes.map((node) => node.dataset.value));
   assert.deepEqual(
     shown,
     buffers.map(({ name }) => name),
   );
+  const { object, material } = await stage.server.call("scene.pick", { x: 0.3, y: 600 / 900 });
+  const named = page.locator(".pixel-values dd[data-surface]");
+  assert.deepEqual((await named.allTextContents()).slice(0, 2), [object, material]);
+  assert.equal(await page.locator(".pixel-values dt").first().textContent(), "Object");
   assert.ok(await page.locator("#mark").isVisible());
   await screenshot(page, "inspector");
   await page.getByRole("switch", { name: "Inspect pixels" }).click();

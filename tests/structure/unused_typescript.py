@@ -15,7 +15,7 @@ LIBRARY = ROOT / "protocol/typescript"
 PUBLIC = {
     "client.ts": {"HeliographClient", "ClientOptions"},
     "messages.ts": None,
-    "settings_schema.ts": {"ToggleControl", "TextControl", "JsonControl"},
+    "settings_schema.ts": {"ToggleControl", "TextControl", "ColorControl", "JsonControl"},
 }
 EXPORT = re.compile(r"^export (?:declare )?(?:abstract )?(?:async )?"
                     r"(?:const|let|function|class|interface|type|enum) (\w+)", re.MULTILINE)

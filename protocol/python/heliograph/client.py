@@ -6,6 +6,7 @@ import threading
 from .connection import Connection
 from .methods import Methods
 from .images import Capture
+from .widget import create_widget
 
 
 class AsyncClient(Methods):
@@ -91,6 +92,7 @@ class Client(Methods):
 
     def __init__(self, url, options):
         super().__init__(self._call)
+        self._url, self._options = url, options
         self._loop = asyncio.new_event_loop()
         self._thread = threading.Thread(target=self._loop.run_forever, daemon=True)
         self._thread.start()
@@ -129,6 +131,12 @@ class Client(Methods):
         """See AsyncClient.listen. The callback runs in the background thread and cannot call this
         client: that thread receives the answers."""
         return self._client.listen(notification, callback)
+
+    def widget(self):
+        """A live view of this session for notebooks, with a connection of its own: with anywidget
+        it can be dragged, with ipywidgets it is a live image, without either one image."""
+        options = {**self._options, "session": self.info["session"], "name": "notebook"}
+        return create_widget(Client(self._url, options))
 
     def close(self):
         if self._thread.is_alive():

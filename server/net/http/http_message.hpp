@@ -65,4 +65,9 @@ std::string session_of(const HttpRequest& request);
 /// The elements of a comma separated header, without white space around them.
 std::vector<std::string_view> header_elements(std::string_view value, char separator = ',');
 
+/// Whether browsers show a page of ours at this path, and need a token to do so.
+inline bool is_page(std::string_view path) {
+  return path == "/" || path == "/api";
+}
+
 }  // namespace heliograph::net

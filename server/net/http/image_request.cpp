@@ -49,8 +49,8 @@ Result<void> check_parameters(const HttpRequest& request, std::vector<std::strin
 
 Result<ImageRequest> read_image_request(const HttpRequest& request,
                                         const session::SessionLimits& limits) {
-  const auto known = check_parameters(
-      request, {"buffer", "samples", "width", "height", "camera", "fit", "background"});
+  const auto known = check_parameters(request, {"buffer", "samples", "width", "height", "camera",
+                                                "fit", "background", "transparent"});
   if (!known) return known.error();
   const auto samples = number_parameter(request, "samples", 1, protocol::max_samples_per_pixel);
   if (!samples) return samples.error();
@@ -63,6 +63,8 @@ Result<ImageRequest> read_image_request(const HttpRequest& request,
   if (!fit) return fit.error();
   const auto background = flag_parameter(request, "background");
   if (!background) return background.error();
+  const auto transparent = flag_parameter(request, "transparent");
+  if (!transparent) return transparent.error();
   ImageRequest image;
   image.capture.buffer = request.parameter("buffer").value_or("output");
   image.capture.samples = *samples;
@@ -70,7 +72,8 @@ Result<ImageRequest> read_image_request(const HttpRequest& request,
                 .height = *height,
                 .camera = request.parameter("camera"),
                 .fit = fit->value_or(false),
-                .background = *background};
+                .background = *background,
+                .transparent = transparent->value_or(false)};
   return image;
 }
 

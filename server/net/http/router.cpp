@@ -1,5 +1,6 @@
 #include "net/http/router.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -14,6 +15,7 @@ namespace heliograph::net {
 namespace {
 
 constexpr std::string_view sessions_prefix = "/api/v1/sessions/";
+constexpr std::string_view viewer_module = "/heliograph-viewer.js";
 
 HttpResponse with_header(HttpResponse response, std::string name, std::string value) {
   response.headers.emplace_back(std::move(name), std::move(value));
@@ -36,7 +38,7 @@ HttpResponse method_not_allowed(std::string allowed) {
 }
 
 std::optional<HttpResponse> asset(const HttpRequest& request) {
-  const web::Asset* file = web::find_asset(request.path);
+  const web::Asset* file = web::find_asset(request.path == "/api" ? "api.html" : request.path);
   if (!file) return std::nullopt;
   HttpResponse response;
   for (const std::string_view tag : header_elements(request.header("if-none-match"))) {
@@ -131,10 +133,30 @@ Router::Router(session::SessionHost& host, const AccessControl& access, const Tr
       options_(options),
       headers_(protecting_headers(options)) {}
 
+/// The module that shows our page in one of another origin: code that is no secret, for origins
+/// that may embed the page. It comes with an Origin header and without a cookie.
+std::optional<HttpResponse> Router::module_for_embedder(const HttpRequest& request) const {
+  if (request.path != viewer_module || request.method != "GET") return std::nullopt;
+  const std::string origin(request.header("origin"));
+  if (std::ranges::find(options_.frame_ancestors, origin) == options_.frame_ancestors.end()) {
+    return std::nullopt;
+  }
+  std::optional<HttpResponse> response = asset(request);
+  const Headers cors = access_.cors_headers(request);  // are added to every response
+  const bool listed = std::ranges::find(cors, "Access-Control-Allow-Origin",
+                                        &Headers::value_type::first) != cors.end();
+  if (response && !listed) {
+    response->headers.emplace_back("Access-Control-Allow-Origin", origin);
+    if (cors.empty()) response->headers.emplace_back("Vary", "Origin");
+  }
+  return response;
+}
+
 void Router::handle(const HttpRequest& request, const Pending& pending, Reply reply) const {
+  if (auto module = module_for_embedder(request)) return reply(*std::move(module));
   const bool health_check = request.path.starts_with("/health/");
   const std::optional<std::string> token =
-      request.path == "/" ? request.parameter("token") : std::nullopt;
+      is_page(request.path) ? request.parameter("token") : std::nullopt;
   Admission admission =
       token ? access_.admit_by(*token, request) : access_.admit(request, !health_check);
   if (admission.refusal) {
@@ -146,7 +168,7 @@ void Router::handle(const HttpRequest& request, const Pending& pending, Reply re
   }
   if (token) {
     HttpResponse redirect = text_response(303, "Continue without the token in the address.");
-    redirect.headers = {{"Location", "/" + query_without(request, "token")},
+    redirect.headers = {{"Location", request.path + query_without(request, "token")},
                         {"Set-Cookie", access_.token_cookie(*token, request)}};
     return reply(std::move(redirect));
   }
@@ -236,6 +258,11 @@ void Router::image(const HttpRequest& request, const ImageAddress& address, Role
   if (!asked) return reply(error_response(asked.error()));
   if (role != Role::control && !asked->view.as_shown()) {
     return reply(text_response(403, "This token is read-only: images show what viewers see."));
+  }
+  const bool of_output = asked->capture.buffer == "output";
+  if (asked->view.transparent && (kind->format != protocol::ImageFormat::png || !of_output)) {
+    return reply(error_response(
+        protocol::error::invalid("transparent", "is possible for frame.png of output only")));
   }
   asked->capture.format = kind->format;
   asked->capture.answer = pending;

@@ -54,6 +54,7 @@ class Router {
   void drain() { draining_ = true; }
 
  private:
+  std::optional<HttpResponse> module_for_embedder(const HttpRequest& request) const;
   HttpResponse answer_get(const HttpRequest& request) const;
   std::optional<HttpResponse> health(const HttpRequest& request) const;
   HttpResponse metrics() const;

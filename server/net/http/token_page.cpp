@@ -62,7 +62,7 @@ std::string policy_for(std::string_view page) {
 }  // namespace
 
 bool asks_for_page(const HttpRequest& request) {
-  return request.path == "/" && (request.method == "GET" || request.method == "HEAD") &&
+  return is_page(request.path) && (request.method == "GET" || request.method == "HEAD") &&
          request.header("accept").find("text/html") != std::string_view::npos;
 }
 

@@ -86,7 +86,7 @@ bool embedded_by_other_origin(const HttpRequest& request) {
   // is, by every port of its host.
   if (request.headers.contains("origin")) return false;
   if (request.header("authorization").starts_with(bearer)) return false;
-  const bool page = request.path == "/" && request.header("sec-fetch-mode") == "navigate";
+  const bool page = is_page(request.path) && request.header("sec-fetch-mode") == "navigate";
   return !page && !request.path.starts_with("/health/");
 }
 

@@ -14,7 +14,10 @@ namespace heliograph::render {
 CompiledFrame::CompiledFrame(const Engine::Parts& parts, const FrameInputs& in,
                              const FrameConstantsBuffers& constants_buffers, VkExtent2D extent,
                              bool keeps_buffers)
-    : inputs(in), pool(parts.device, 3, 24), plan(parts.device, extent) {
+    : inputs(in),
+      background(in.moving.environment().background(in.settings.background)),
+      pool(parts.device, 3, 24),
+      plan(parts.device, extent) {
   plan.use_host_kernels(parts.host_kernels);
   plan.share_memory();
   share_sets(parts, constants_buffers);
@@ -30,10 +33,13 @@ CompiledFrame::CompiledFrame(const Engine::Parts& parts, const FrameInputs& in,
 
 void CompiledFrame::share_sets(const Engine::Parts& parts,
                                const FrameConstantsBuffers& constants_buffers) {
+  const EnvironmentView environment =
+      inputs.moving.environment().view(inputs.settings.environment.separate_sun);
+  const gpu::Image& seen = background ? background->image : environment.background;
   const auto share = [&](const gpu::Buffer& constants, std::uint32_t side) {
     const VkDescriptorSet set = pool.allocate(parts.programs.frame_layout.handle());
     write_frame_set(parts, set, constants, inputs.tables.lights,
-                    inputs.moving.environment().view(inputs.settings.environment.separate_sun));
+                    {seen, environment.maps, environment.sun});
     plan.share_set(frame_set, set, side);
   };
   share(constants_buffers.whole, 1);

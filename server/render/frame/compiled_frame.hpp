@@ -9,6 +9,7 @@
 #include "render/frame/engine_parts.hpp"
 #include "render/frame/frame.hpp"
 #include "render/frame/frame_constants.hpp"
+#include "render/resources/environment/background.hpp"
 
 namespace heliograph::render {
 
@@ -31,6 +32,7 @@ struct CompiledFrame {
   std::optional<DrawnImage> find(std::string_view buffer) const;
 
   FrameInputs inputs;
+  std::shared_ptr<const Background> background;  // null: the environment as it is
   gpu::DescriptorPool pool;
   gpu::FramePlan plan;
   FrameOutputs outputs;

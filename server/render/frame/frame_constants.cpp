@@ -4,6 +4,7 @@
 #include <cstring>
 #include <glm/gtc/constants.hpp>
 
+#include "render/resources/environment/background.hpp"
 #include "render/resources/moving_scene.hpp"
 
 namespace heliograph::render {
@@ -43,7 +44,7 @@ void add_environment(shared::FrameConstants& constants, const EnvironmentView& e
   const glm::vec3& d = sun.direction;
   constants.sun_direction = {c * d.x + s * d.z, d.y, c * d.z - s * d.x};
   constants.sun_radius = std::tan(glm::radians(0.5f * sun.angular_diameter));
-  constants.sun_irradiance = glm::vec4(sun.irradiance * constants.environment_intensity, 0.0f);
+  constants.sun_irradiance = sun.irradiance * constants.environment_intensity;
   ++constants.light_count;
 }
 
@@ -89,6 +90,8 @@ shared::FrameConstants make_frame_constants(const scene::Camera& camera,
   constants.history_invalid = before ? 0u : 1u;
   const float rotation = glm::radians(settings.environment.rotation);
   constants.environment_intensity = settings.environment.intensity;
+  constants.background_intensity =
+      shows_environment(settings.background) ? settings.environment.intensity : 1.0f;
   constants.environment_cos = std::cos(rotation);
   constants.environment_sin = std::sin(rotation);
   constants.ambient_radius = settings.ambient.radius;

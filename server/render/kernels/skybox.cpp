@@ -39,7 +39,8 @@ class Skybox {
     Float3 radiance = numbers(0.0f);
     if (visible_ && !none(sky)) {
       const PixelLanes pixel{hn::Iota(integer_tag, x), integer(y)};
-      radiance = keep(sky, radiance_from(job_.map, job_.frame, -camera_.to_eye(pixel)));
+      radiance = keep(sky, radiance_from(job_.map, job_.frame, -camera_.to_eye(pixel),
+                                         job_.frame.background_intensity));
     }
     const Float4 texels{radiance.x, radiance.y, radiance.z, one()};
     float* const to = row_of<float>(job_.background, y) + 4 * x;

@@ -15,7 +15,7 @@ struct SkyboxJob : FrameJob<SkyboxBindings> {
   RadianceMap map;  // what the eye sees behind the scene
 };
 
-/// The environment where there is no surface, on all processors; elsewhere black, at the cost of
+/// The background where there is no surface, on all processors; elsewhere black, at the cost of
 /// filling the image.
 void skybox(const SkyboxJob& job);
 

@@ -69,7 +69,7 @@ SceneMotion scene_motion(const MovingScene& scene, const shared::FrameConstants&
     add(sum, lights[i], previous[i], scene.resources().scene->bounds, now.directional_light_radius);
   }
   if (now.sun_radius >= 0.0f && before->sun_radius >= 0.0f) {
-    sum.add(glm::dot(glm::vec3(now.sun_irradiance), luminance_weights),
+    sum.add(glm::dot(now.sun_irradiance, luminance_weights),
             half_turn(before->sun_direction, now.sun_direction), now.sun_radius);
   }
   bool changed = now.environment_intensity != before->environment_intensity ||

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
 #include <string_view>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "render/api/renderer.hpp"
 #include "scene/environment.hpp"
 #include "scene/import.hpp"
+#include "scene/studio.hpp"
 #include "session/event_log.hpp"
 
 namespace heliograph::session {
@@ -20,6 +22,7 @@ using protocol::Result;
 namespace {
 
 constexpr std::size_t max_queued_environments = 8;
+constexpr std::string_view studio_name = "studio";  // unless a file has it
 
 }  // namespace
 
@@ -29,7 +32,12 @@ EnvironmentLibrary::EnvironmentLibrary(render::Engine& engine, const SceneCatalo
       loader_("environment loader", max_queued_environments) {}
 
 std::vector<CatalogueEntry> EnvironmentLibrary::list() const {
-  return catalogue_.list_files({".hdr", ".exr"});
+  std::vector<CatalogueEntry> files = catalogue_.list_files({".hdr", ".exr"});
+  const auto at = std::ranges::lower_bound(files, studio_name, {}, &CatalogueEntry::name);
+  if (at == files.end() || at->name != studio_name) {
+    files.insert(at, CatalogueEntry{.name = std::string(studio_name), .path = {}, .root = {}});
+  }
+  return files;
 }
 
 Result<CatalogueEntry> EnvironmentLibrary::find(const std::string& name) const {
@@ -47,7 +55,10 @@ Result<void> EnvironmentLibrary::load_into(Session& session, const CatalogueEntr
                                            const std::string& by) {
   try {
     return session.scene().set_environment(
-        entry.name, engine_.prefilter(scene::load_environment(entry.path)), by);
+        entry.name,
+        engine_.prefilter(entry.path.empty() ? scene::studio_environment()
+                                             : scene::load_environment(entry.path)),
+        by);
   } catch (const scene::ImportError& failure) {
     return protocol::error::invalid("name", "cannot be loaded: " + std::string(failure.what()));
   } catch (const render::DeviceLost& failure) {

@@ -18,13 +18,13 @@ class Engine;
 
 namespace heliograph::session {
 
-/// The environments that clients may choose: every .hdr and .exr file below the scene roots, named
-/// like scenes. Loads and prefilters them beside rendering.
+/// The environments that clients may choose: the studio, and every .hdr and .exr file below the
+/// scene roots, named like scenes. Loads and prefilters them beside rendering.
 class EnvironmentLibrary {
  public:
   EnvironmentLibrary(render::Engine& engine, const SceneCatalogue& catalogue);
 
-  /// All environments as they are on disk now, by name.
+  /// All environments as they are on disk now, by name; the studio has no path.
   std::vector<CatalogueEntry> list() const;
   /// Sets the environment of the session's scene. `done` is called once, here or on the loading
   /// thread.

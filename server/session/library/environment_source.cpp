@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "scene/studio.hpp"
+
 namespace heliograph::session {
 
 namespace fs = std::filesystem;
@@ -28,8 +30,8 @@ std::shared_ptr<const scene::Environment> EnvironmentSource::environment_at(cons
   const std::lock_guard lock(mutex_);
   const scene::SourceFile file = scene::examine_file(path);
   if (last_ && last_file_ == file) return last_;
-  last_ = std::make_shared<const scene::Environment>(
-      path.empty() ? scene::constant_environment(glm::vec3(1.0f)) : scene::load_environment(path));
+  last_ = std::make_shared<const scene::Environment>(path.empty() ? scene::studio_environment()
+                                                                  : scene::load_environment(path));
   last_file_ = file;
   return last_;
 }

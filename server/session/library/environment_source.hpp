@@ -23,7 +23,7 @@ class EnvironmentSource {
 
   /// The forced environment, else the one beside the scene.
   std::optional<std::filesystem::path> path_for(const CatalogueEntry& entry) const;
-  /// The environment in that file; for an empty path a constant radiance of 1.
+  /// The environment in that file; for an empty path the studio.
   /// @throws scene::ImportError
   std::shared_ptr<const scene::Environment> environment_at(const std::filesystem::path& path);
 

@@ -19,10 +19,10 @@ vec3 world_of_environment(vec3 direction) {
   return vec3(c * direction.x + s * direction.z, direction.y, c * direction.z - s * direction.x);
 }
 
-/// What the eye sees behind the scene: with the sun's disk.
+/// What the eye sees behind the scene: with the sun's disk, where that is the environment.
 vec3 environment_background(vec3 world) {
   vec2 uv = equirectangular_uv(environment_direction(world));
-  return textureLod(background_map, uv, 0.0).rgb * frame.environment_intensity;
+  return textureLod(background_map, uv, 0.0).rgb * frame.background_intensity;
 }
 
 /// What lights the scene. Without the sun where it is separated: that is a light of its own.

@@ -21,7 +21,7 @@ Light environment_sun() {
   light.type = light_directional;
   light.direction = -frame.sun_direction;
   light.range = 0.0;
-  light.color = frame.sun_irradiance.rgb;
+  light.color = frame.sun_irradiance;
   light.radius = frame.sun_radius;
   light.tangent = vec3(0.0);
   light.half_width = light.half_height = 0.0;

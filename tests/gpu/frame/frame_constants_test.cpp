@@ -61,12 +61,15 @@ TEST_F(FrameConstants, PreviousMatricesAreThoseOfPreviousFrame) {
 TEST_F(FrameConstants, ContainSettings) {
   settings_.environment.intensity = 2.5f;
   settings_.environment.rotation = 90.0f;
+  EXPECT_FLOAT_EQ(make(camera_, 9).background_intensity, 2.5f);
+  settings_.background.show = protocol::BackgroundKind::color;
   settings_.ambient.radius = 3.0f;
   settings_.exposure.compensation = 3.0f;
   settings_.sampling.seed = 42;
   settings_.shadows.enabled = false;
   const auto constants = make(camera_, 9);
   EXPECT_FLOAT_EQ(constants.environment_intensity, 2.5f);
+  EXPECT_FLOAT_EQ(constants.background_intensity, 1.0f) << "it is no part of the environment";
   EXPECT_NEAR(constants.environment_cos, 0.0f, 1e-6f);
   EXPECT_FLOAT_EQ(constants.environment_sin, 1.0f);
   EXPECT_FLOAT_EQ(constants.ambient_radius, 3.0f);

@@ -158,13 +158,16 @@ class Edits(ServerTestCase):
     def test_environments(self):
         listed = self.server.call("environment.list")
         names = [one["name"] for one in listed["environments"]]
-        self.assertEqual(sorted(names), ["broken", "sky", "white"])
+        self.assertEqual(sorted(names), ["broken", "sky", "studio", "white"])
         self.assertIsNone(listed["current"])
         before = self.image()
         state = self.server.call("environment.set", {"name": "white", "rotation": 40})
         self.assertEqual((state["current"], state["rotation"]), ("white", 40))
         white = self.image()
         self.assertGreater(difference(white, before), 5)
+        state = self.server.call("environment.set", {"name": "studio"})
+        self.assertEqual(state["current"], "studio")
+        self.assertGreater(difference(self.image(), white), 5)
         state = self.server.call("environment.set", {"name": None, "rotation": 0})
         self.assertIsNone(state["current"])
         self.assertLess(difference(self.image(), before), 0.2 * difference(white, before))

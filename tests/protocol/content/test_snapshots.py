@@ -43,6 +43,17 @@ class Snapshots(ServerTestCase):
         self.assertEqual(corner, b"\0\0\0")
         self.assertNotEqual(shown.rgb[:3], corner)
 
+    def test_transparent_images_have_coverage(self):
+        status, headers, body = self.server.get(IMAGE + "?transparent=1&samples=4")
+        self.assertEqual((status, headers["content-type"]), (200, "image/png"))
+        color_type = body[25]
+        self.assertEqual(color_type, 6, "red, green, blue and alpha")
+        self.server.wait_for(lambda: self.sessions() == ["main"], "the end of the copy")
+        for address in (IMAGE + "?transparent=1&buffer=skybox",
+                        "/api/v1/sessions/main/frame.jpg?transparent=1"):
+            status, _, body = self.server.get(address)
+            self.assertEqual((status, b"frame.png of output" in body), (400, True), address)
+
     def test_the_session_and_its_viewers_do_not_notice(self):
         state = [self.server.call(method) for method in ("camera.get", "session.info")]
         self.image("?width=48&camera=main&background=0")

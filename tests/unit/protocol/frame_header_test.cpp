@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <string_view>
 #include <vector>
 
 namespace heliograph::protocol {
@@ -54,6 +56,31 @@ TEST(FrameHeader, HasTheBytesOfTheProtocol) {
                                          0x74, 0x73, 0x72, 0x71,   // 56 queue_us
                                          0x84, 0x83, 0x82, 0x81};  // 60 sample_count
   EXPECT_EQ(bytes_of(example()), golden);
+}
+
+TEST(FrameHeader, FieldsCoverItWithoutGapsAndAreWhereTheyAreWritten) {
+  std::size_t end = 0;
+  for (const FrameHeaderField& field : frame_header_fields()) {
+    EXPECT_EQ(field.offset, end) << field.name;
+    EXPECT_FALSE(field.meaning.empty()) << field.name;
+    end += field.bytes;
+  }
+  EXPECT_EQ(end, frame_header_bytes);
+  // Each of these has a value of its own in the example.
+  const std::vector<std::uint8_t> bytes = bytes_of(example());
+  const auto first_byte = [&](std::string_view name) {
+    const auto fields = frame_header_fields();
+    const auto found = std::ranges::find(fields, name, &FrameHeaderField::name);
+    return found == fields.end() ? -1 : int{bytes[found->offset]};
+  };
+  EXPECT_EQ(first_byte("magic"), 'H');
+  EXPECT_EQ(first_byte("header_bytes"), 64);
+  EXPECT_EQ(first_byte("frame_seq"), 0x04);
+  EXPECT_EQ(first_byte("input_seq_echo"), 0x24);
+  EXPECT_EQ(first_byte("y"), 0x05);
+  EXPECT_EQ(first_byte("full_height"), 0xd0);
+  EXPECT_EQ(first_byte("render_start_us"), 0x48);
+  EXPECT_EQ(first_byte("sample_count"), 0x84);
 }
 
 TEST(FrameHeader, SurvivesTheRoundTrip) {

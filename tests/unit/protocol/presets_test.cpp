@@ -53,6 +53,8 @@ Settings all_changed() {
       value = static_cast<Value>(next % setting.choices.size());
     } else if constexpr (std::is_same_v<Value, std::string>) {
       value += "2";
+    } else if constexpr (std::is_same_v<Value, Color>) {
+      value.rgb ^= 0xffffffu;
     } else {
       value = static_cast<Value>(value == static_cast<Value>(limits.maximum) ? limits.minimum
                                                                              : limits.maximum);

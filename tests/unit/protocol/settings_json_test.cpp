@@ -24,6 +24,8 @@ Settings everything_changed() {
       value = !value;
     } else if constexpr (std::is_same_v<Value, std::string>) {
       value = "other." + value;
+    } else if constexpr (std::is_same_v<Value, Color>) {
+      value.rgb ^= 0xffffffu;
     } else if constexpr (std::is_enum_v<Value>) {
       const auto last = static_cast<Value>(setting.choices.size() - 1);
       value = value == last ? Value{} : last;

@@ -62,6 +62,9 @@ TEST(Settings, DescriptorsHaveTheDefaultsOfTheStruct) {
     if constexpr (std::is_enum_v<Value>) {
       EXPECT_EQ(std::get<std::string>(setting.initial), enum_name(value));
       EXPECT_EQ(setting.type, SettingType::choice);
+    } else if constexpr (std::is_same_v<Value, Color>) {
+      EXPECT_EQ(std::get<std::string>(setting.initial), color_text(value));
+      EXPECT_EQ(setting.type, SettingType::color);
     } else {
       EXPECT_EQ(std::get<Value>(setting.initial), value) << setting.path;
     }
@@ -108,11 +111,15 @@ TEST(SetByPath, ReadsEveryType) {
   EXPECT_TRUE(set_by_path(settings, "accumulation.max_samples=256"));
   EXPECT_TRUE(set_by_path(settings, "shadows.enabled=false"));
   EXPECT_TRUE(set_by_path(settings, "view.buffer=gbuffer.normal"));
+  EXPECT_TRUE(set_by_path(settings, "background.color=#12aBff"));
+  EXPECT_TRUE(set_by_path(settings, "background.upper_color=000001"));
   EXPECT_EQ(settings.tone_map.curve, ToneMapCurve::aces);
   EXPECT_FLOAT_EQ(settings.exposure.compensation, -1.5f);
   EXPECT_EQ(settings.accumulation.max_samples, 256);
   EXPECT_FALSE(settings.shadows.enabled);
   EXPECT_EQ(settings.view.buffer, "gbuffer.normal");
+  EXPECT_EQ(settings.background.color, Color{0x12abff});
+  EXPECT_EQ(settings.background.upper_color, Color{1});
 }
 
 struct Refusal {
@@ -155,6 +162,9 @@ INSTANTIATE_TEST_SUITE_P(
                     Refusal{"accumulation.max_samples=0", "accumulation.max_samples", "1 to 65536"},
                     Refusal{"sampling.seed=2147483648", "sampling.seed", "0 to 2147483647"},
                     Refusal{"shadows.enabled=maybe", "shadows.enabled", "true or false"},
+                    Refusal{"background.color=red", "background.color", "#rrggbb"},
+                    Refusal{"background.color=#12345", "background.color", "#rrggbb"},
+                    Refusal{"background.color=-12345", "background.color", "#rrggbb"},
                     Refusal{"view.buffer=", "view.buffer", "1 to 64 characters"},
                     Refusal{"view.buffer=a b", "view.buffer", "1 to 64 characters"},
                     Refusal{"view.buffer=\xff", "view.buffer", "1 to 64 characters"}));

@@ -3,6 +3,9 @@
 import { Comparison } from "../compare/comparison.ts";
 import { fileStem, outputActions } from "../output/output_actions.ts";
 import { createSaveDialog } from "../output/save_dialog.ts";
+import { createEmbedDialog } from "../output/embed_dialog.ts";
+import { reportToEmbeddingPage } from "../embed/embedding_page.ts";
+import { mountFirstHint } from "../overlay/first_hint.ts";
 import { createHelp } from "../overlay/help.ts";
 import { mountMjpegFallback } from "../overlay/mjpeg_fallback.ts";
 import { mountParticipants } from "../overlay/participants.ts";
@@ -95,11 +98,13 @@ function main(): void {
     fileStem: () => fileStem(viewer),
     inform,
   });
+  const embedDialog = createEmbedDialog(find<HTMLDialogElement>("embed"), viewer, inform);
   const help = createHelp(find<HTMLDialogElement>("help"));
   const panel = mountPanel(find("panel"), viewer, {
     output: outputActions(viewer, {
       recordingButton: find("recording"),
       save: saveDialog.open,
+      embed: embedDialog.open,
       inform,
     }),
     inspect: {
@@ -114,6 +119,7 @@ function main(): void {
   mountTransport(viewer, find("transport"));
   mountStatus(viewer, find("pill"), find("notice"));
   mountRefining(viewer, find("refining"));
+  mountFirstHint(viewer, canvas, find("first-hint"));
   mountTooltips();
 
   viewer.stream.chooseSize = ({ limits, device }) => {
@@ -169,6 +175,7 @@ function main(): void {
   addEventListener("hashchange", openLink);
   openLink();
   mountThumbnails(viewer);
+  reportToEmbeddingPage(viewer);
   mountUpload(viewer, document.body, toasts);
   viewer.connection.open();
 }

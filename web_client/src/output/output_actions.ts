@@ -13,6 +13,8 @@ interface OutputHost {
   recordingButton: HTMLElement;
   /** Opens the dialog that saves an image. */
   save(): void;
+  /** Opens the dialog with code for other pages. */
+  embed(): void;
   /** Shows the result as one sentence. */
   inform(message: string): void;
 }
@@ -24,7 +26,11 @@ export function outputActions(viewer: Viewer, host: OutputHost): MenuItem[] {
   const recorder = new Recorder(viewer);
   const toggleRecording = attempt(async () => {
     if (!recorder.running) await recorder.start();
-    else saveFile(await recorder.stop(), `${fileStem(viewer)}.webm`);
+    else {
+      const { video, extension } = await recorder.stop();
+      saveFile(video, `${fileStem(viewer)}.${extension}`);
+      host.inform(`Saved ${fileStem(viewer)}.${extension}`);
+    }
   });
   mountRecordingButton(recorder, host.recordingButton, toggleRecording);
   return [
@@ -59,18 +65,11 @@ export function outputActions(viewer: Viewer, host: OutputHost): MenuItem[] {
         );
       }),
     },
+    { label: "Embed in another page", icon: "code", run: host.embed },
     {
-      label: "Copy code to embed",
-      icon: "code",
-      run: attempt(async () => {
-        const link = linkTo(location.href, viewer.viewState()).href.replaceAll("&", "&amp;");
-        const title = (viewer.scene.value?.name ?? "Heliograph").replaceAll('"', "&quot;");
-        await copyText(
-          `<iframe src="${link}" title="${title}" width="960" height="540" ` +
-            `style="border:0" allow="fullscreen; clipboard-write"></iframe>`,
-        );
-        host.inform("Code copied to the clipboard. The server must allow the page that embeds it.");
-      }),
+      label: "API of this server",
+      icon: "external",
+      run: () => window.open(new URL("api", document.baseURI), "_blank", "noopener"),
     },
   ];
 }

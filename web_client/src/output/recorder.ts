@@ -1,11 +1,24 @@
-// Records the frames as WebM. The visible canvas belongs to the stream worker, so every frame is
+// Records the frames as MP4, or as WebM where the browser writes no MP4. The visible canvas belongs to the stream worker, so every frame is
 // copied to another canvas, which the recorder captures.
 
 import { Signal } from "../common/signal.ts";
 import type { Viewer } from "../session/viewer.ts";
 
 const bitsPerSecond = 8_000_000;
-const types = ["video/webm;codecs=vp9", "video/webm;codecs=vp8", "video/webm"];
+const types = [
+  "video/mp4;codecs=avc1.640028",
+  "video/mp4;codecs=avc1.42e01e",
+  "video/mp4;codecs=vp09.00.10.08",
+  "video/webm;codecs=vp9",
+  "video/webm;codecs=vp8",
+  "video/webm",
+];
+
+interface Recording {
+  video: Blob;
+  /** Of the file's name. */
+  extension: "mp4" | "webm";
+}
 
 export class Recorder {
   private readonly viewer: Viewer;
@@ -49,7 +62,7 @@ export class Recorder {
   }
 
   /** Ends the recording and returns the file. */
-  async stop(): Promise<Blob> {
+  async stop(): Promise<Recording> {
     const { recorder } = this;
     clearInterval(this.timer);
     this.seconds.set(null);
@@ -59,14 +72,16 @@ export class Recorder {
     const stopped = new Promise((resolve) => recorder.addEventListener("stop", resolve));
     recorder.stop();
     await stopped;
-    return new Blob(this.parts, { type: recorder.mimeType });
+    const extension = recorder.mimeType.startsWith("video/mp4") ? "mp4" : "webm";
+    return { video: new Blob(this.parts, { type: recorder.mimeType }), extension };
   }
 
   private paint(image: ImageBitmap): void {
     // The size is fixed at the start: recorders do not support a change.
     if (!this.recorder) {
-      this.canvas.width = image.width;
-      this.canvas.height = image.height;
+      // H.264 has even sizes.
+      this.canvas.width = image.width & ~1;
+      this.canvas.height = image.height & ~1;
     }
     const context = this.canvas.getContext("2d", { alpha: false });
     context?.drawImage(image, 0, 0, this.canvas.width, this.canvas.height);

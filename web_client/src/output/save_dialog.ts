@@ -4,7 +4,7 @@ import { saveFile, captureBlob } from "../common/image_files.ts";
 import { type Viewer, bufferSetting } from "../session/viewer.ts";
 import { button, element, setOptions, setText } from "../widgets/element.ts";
 import { field } from "../widgets/field.ts";
-import { captureInSize } from "./sized_capture.ts";
+import { captureInSize, captureWithoutBackground } from "./sized_capture.ts";
 import { type ImageSize, createSizeFields } from "./size_fields.ts";
 
 interface SaveHost {
@@ -39,6 +39,13 @@ export function createSaveDialog(
   const format = element("select", { name: "format" });
   const samples = element("select", { name: "samples" });
   const size = createSizeFields();
+  const transparent = element("input", {
+    type: "checkbox",
+    role: "switch",
+    class: "switch",
+    name: "transparent",
+  });
+  const background = field("Transparent", transparent);
   const bar = element("div", { class: "bar" });
   const progress = element(
     "div",
@@ -54,6 +61,7 @@ export function createSaveDialog(
     field("Format", format),
     field("Samples", samples),
     size.node,
+    background,
     progress,
     status,
     element("footer", {}, cancel, save),
@@ -74,6 +82,8 @@ export function createSaveDialog(
   /** The running capture in another size, and its samples so far. */
   let sized: AbortController | null = null;
   let sizedSamples = 0;
+  /** Whether an image without background is being rendered: it does not report its samples. */
+  let withoutBackground = false;
 
   const targetSamples = (): number => Number(viewer.settings.value(maxSamples) ?? 1);
   const viewSize = (): ImageSize => {
@@ -81,16 +91,26 @@ export function createSaveDialog(
     return { width, height };
   };
   const shownSamples = (): number => viewer.frame.value?.samples ?? 1;
+  const shownBuffer = (): string => String(viewer.settings.value(bufferSetting) ?? "output");
+  const showsOutput = (): boolean => shownBuffer() === "output";
 
   const update = (): void => {
     if (!dialog.open) return;
     const shown = shownSamples();
     const converged = viewer.frame.value?.final ?? false;
     if (!isSaving) {
+      const possible = viewer.mayCreateSessions && format.value === "png" && showsOutput();
+      transparent.disabled = !possible;
+      background.hidden = !possible;
       setOptions(samples, [
         { value: "now", label: `As it is now: ${counted(shown)}` },
         { value: "converged", label: converged ? "Converged: now" : "Converged: when finished" },
       ]);
+      return;
+    }
+    if (withoutBackground) {
+      progress.removeAttribute("aria-valuenow");
+      setText(status, "Rendering without the background");
       return;
     }
     const target = targetSamples();
@@ -105,10 +125,11 @@ export function createSaveDialog(
 
   const setSaving = (saving: boolean): void => {
     isSaving = saving;
-    format.disabled = samples.disabled = save.disabled = saving;
+    format.disabled = samples.disabled = transparent.disabled = save.disabled = saving;
     size.enable(!saving && viewer.mayCreateSessions);
     progress.hidden = !saving;
-    bar.style.width = "0";
+    progress.classList.toggle("indeterminate", saving && withoutBackground);
+    bar.style.width = withoutBackground ? "" : "0";
     setText(status, "");
     update();
   };
@@ -117,21 +138,23 @@ export function createSaveDialog(
   const render = async (chosen: Format, wanted: number | undefined): Promise<RenderedImage> => {
     const { width, height } = size.value();
     const view = viewSize();
-    if (width === view.width && height === view.height) {
+    if (!withoutBackground && width === view.width && height === view.height) {
       const capture = await viewer.queries.capture(undefined, chosen, wanted);
       return { ...capture, file: captureBlob(capture) };
     }
-    const buffer = String(viewer.settings.value(bufferSetting) ?? "output");
+    const buffer = shownBuffer();
     const request = { width, height, buffer, extension: extensionOf(chosen), samples: wanted };
     sized = new AbortController();
     sizedSamples = 0;
     update();
     try {
       const { signal } = sized;
-      const capture = await captureInSize(viewer, request, signal, (count) => {
-        sizedSamples = count;
-        update();
-      });
+      const capture = withoutBackground
+        ? await captureWithoutBackground(viewer, request, signal)
+        : await captureInSize(viewer, request, signal, (count) => {
+            sizedSamples = count;
+            update();
+          });
       return { ...capture, width, height, buffer };
     } finally {
       sized = null;
@@ -143,6 +166,7 @@ export function createSaveDialog(
     const own = attempt;
     const chosen = format.value as Format;
     const wanted = samples.value === "now" ? shownSamples() : undefined;
+    withoutBackground = transparent.checked && !background.hidden;
     setSaving(true);
     try {
       const image = await render(chosen, wanted);
@@ -160,6 +184,7 @@ export function createSaveDialog(
     }
   };
 
+  format.addEventListener("change", update);
   form.addEventListener("submit", (event) => {
     event.preventDefault();
     if (!isSaving) void run();
@@ -171,6 +196,7 @@ export function createSaveDialog(
   dialog.addEventListener("close", () => {
     attempt += 1;
     sized?.abort();
+    withoutBackground = false;
     setSaving(false);
   });
   return {

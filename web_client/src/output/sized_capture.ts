@@ -21,6 +21,11 @@ interface SizedCapture {
   samples: number | undefined;
 }
 
+interface SizedImage {
+  file: Blob;
+  samples: number;
+}
+
 /**
  * Renders the session's view in the given size. Reports the samples so far.
  * @throws Error with the server's reason, also where it has no room; AbortError
@@ -30,7 +35,7 @@ export async function captureInSize(
   { width, height, buffer, extension, samples }: SizedCapture,
   signal: AbortSignal,
   progress: (samples: number) => void,
-): Promise<{ file: Blob; samples: number }> {
+): Promise<SizedImage> {
   const size = { width, height, idle_timeout: idleSeconds };
   const params = { copy_of: viewer.hello?.session ?? "main", ...size };
   const { name } = await viewer.rpc.request("session.create", params, createTimeoutMs);
@@ -39,17 +44,41 @@ export async function captureInSize(
     signal.throwIfAborted();
     const url = viewer.connection.address.url(`api/v1/sessions/${name}/frame.${extension}`);
     url.searchParams.set("buffer", buffer);
-    if (samples !== undefined) url.searchParams.set("samples", String(samples));
-    const response = await fetch(url, { signal });
-    if (!response.ok) throw new Error((await response.text()).trim());
-    const rendered = Number(response.headers.get("x-heliograph-samples") ?? samples ?? 1);
-    return { file: await response.blob(), samples: rendered };
+    return await download(url, samples, signal);
   } finally {
     // If this fails, the session ends by its idle timeout.
     await figures.rpc.request("session.close", { session: name }).catch(() => {});
     figures.dispose();
     viewer.rpc.notify("session.close", { session: name });
   }
+}
+
+/**
+ * Renders the session's view as a PNG file without background: the server makes a copy itself.
+ * @throws Error with the server's reason; AbortError
+ */
+export async function captureWithoutBackground(
+  viewer: Viewer,
+  { width, height, samples }: SizedCapture,
+  signal: AbortSignal,
+): Promise<SizedImage> {
+  const session = viewer.hello?.session ?? "main";
+  const url = viewer.connection.address.url(`api/v1/sessions/${session}/frame.png`);
+  const parameters = { transparent: "1", width: String(width), height: String(height) };
+  for (const [name, value] of Object.entries(parameters)) url.searchParams.set(name, value);
+  return download(url, samples, signal);
+}
+
+async function download(
+  url: URL,
+  samples: number | undefined,
+  signal: AbortSignal,
+): Promise<SizedImage> {
+  if (samples !== undefined) url.searchParams.set("samples", String(samples));
+  const response = await fetch(url, { signal });
+  if (!response.ok) throw new Error((await response.text()).trim());
+  const rendered = Number(response.headers.get("x-heliograph-samples") ?? samples ?? 1);
+  return { file: await response.blob(), samples: rendered };
 }
 
 /** A connection to the session for the figures of its frames, which are not shown. */

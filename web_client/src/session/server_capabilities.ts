@@ -5,6 +5,9 @@ import { type OpenRpc, choicesOf } from "heliograph/openrpc.ts";
 import type { RpcPeer } from "heliograph/rpc.ts";
 import { Signal } from "../common/signal.ts";
 
+/** So many frames of older settings may still arrive after a change. */
+const framesOnTheWay = 3;
+
 export class ServerCapabilities {
   readonly buffers = new Signal<BufferInfo[]>([]);
   /** File formats of `frame.capture`. */
@@ -13,6 +16,8 @@ export class ServerCapabilities {
   /** Names of the server's methods. */
   readonly methods = new Signal<ReadonlySet<string>>(new Set());
   private readonly rpc: RpcPeer;
+  /** Frames to draw before the list of buffers is read again; null: it is up to date. */
+  private framesUntilRead: number | null = null;
 
   constructor(rpc: RpcPeer) {
     this.rpc = rpc;
@@ -35,6 +40,20 @@ export class ServerCapabilities {
 
   /** The list of buffers depends on the scene and on settings. */
   async readBuffers(): Promise<void> {
-    this.buffers.set((await this.rpc.request("frame.buffers")).buffers);
+    this.framesUntilRead = null;
+    const { buffers } = await this.rpc.request("frame.buffers");
+    const names = (list: BufferInfo[]): string => list.map(({ name }) => name).join();
+    if (names(buffers) !== names(this.buffers.value)) this.buffers.set(buffers);
+  }
+
+  /** Frames with these settings may have other buffers. */
+  settingsChanged(): void {
+    this.framesUntilRead = framesOnTheWay;
+  }
+
+  async frameDrawn(): Promise<void> {
+    if (this.framesUntilRead === null) return;
+    this.framesUntilRead -= 1;
+    if (this.framesUntilRead <= 0) await this.readBuffers();
   }
 }

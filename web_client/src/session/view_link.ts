@@ -7,6 +7,8 @@ import { checkedEdits, maxEdits } from "./scene_edits.ts";
 import type { ClipState, ViewState } from "./view_state.ts";
 
 const key = "view";
+/** A link to a scene as it is. */
+const modelKey = "model";
 const digits = 6;
 
 /** Mail programs and messengers truncate longer links. */
@@ -39,8 +41,10 @@ function hrefOf(page: string, state: ViewState): string {
 
 /** The view in a URL; null without one or with an invalid one. */
 export function viewIn(address: string): ViewState | null {
-  const text = new URLSearchParams(new URL(address).hash.slice(1)).get(key);
-  if (!text) return null;
+  const parts = new URLSearchParams(new URL(address).hash.slice(1));
+  const text = parts.get(key);
+  const model = parts.get(modelKey);
+  if (!text) return model ? { scene: model } : null;
   try {
     const json = new TextDecoder().decode(bytesOf(text));
     return checked(JSON.parse(json));

@@ -6,7 +6,6 @@ import {
   type AnimationState,
   type FrameStats,
   type Hello,
-  type Notifications,
   type SceneInfo,
   type SceneList,
   type SessionControlParams,
@@ -23,12 +22,12 @@ import { LatencyMeter } from "../stream/latency.ts";
 import { RateMeter } from "../stream/rates.ts";
 import { type DrawnFrame, clockMs } from "../stream/worker_messages.ts";
 import { type Activity, activityOf } from "./activity.ts";
-import { type ControlState, controlStateOf, describeControl } from "./control_state.ts";
+import { type ControlState, controlStateOf } from "./control_state.ts";
 import { CameraMoves } from "./camera_moves.ts";
 import type { FileError } from "./file_errors.ts";
 import { FrameQueries } from "./frame_queries.ts";
+import { receiveNotification } from "./notifications.ts";
 import { OwnSession } from "./own_session.ts";
-import { type RestoreHost, restoreView } from "./restore_view.ts";
 import { SceneLoading } from "./scene_loading.ts";
 import { SceneParts } from "./scene_parts.ts";
 import { ServerCapabilities } from "./server_capabilities.ts";
@@ -36,6 +35,7 @@ import { SessionRestore } from "./session_restore.ts";
 import { SettingsStore } from "./settings_store.ts";
 import { StreamRequests } from "./stream_requests.ts";
 import { UndoHistory } from "./undo_history.ts";
+import { ViewRestore } from "./view_restore.ts";
 import { type ViewState, changesOf, clipState } from "./view_state.ts";
 
 const statsIntervalMs = 250;
@@ -56,8 +56,7 @@ export class Viewer {
   readonly cameraMoves: CameraMoves;
   readonly scenes = new Signal<SceneList>({ scenes: [], current: null });
   readonly scene = new Signal<SceneInfo | null>(null);
-  /** True while a whole view state is being restored. */
-  readonly restoring = new Signal(false);
+  readonly restoring: Signal<boolean>;
   readonly camera = new Signal<CameraPose | null>(null);
   readonly animation = new Signal<AnimationState | null>(null);
   /** The session and its viewers; null where the server does not tell. */
@@ -93,8 +92,7 @@ export class Viewer {
   private predictedSeq = 0;
   /** From the arrival of the server's hello until the connection is lost. */
   private receivedHello: Hello | null = null;
-  /** The state that is still to be restored; it survives lost connections. */
-  private pendingViewState: ViewState | null = null;
+  readonly viewRestore: ViewRestore;
   private readonly sessionRestore: SessionRestore;
 
   constructor(base: string, canvas: HTMLCanvasElement) {
@@ -127,7 +125,7 @@ export class Viewer {
       address: this.connection.address,
       current: () => this.receivedHello?.session ?? null,
       reconnect: () => this.changeSession(),
-      show: (view) => (this.pendingViewState = view),
+      show: (view) => (this.viewRestore.pending = view),
       refused: (sentence) => this.onError(sentence),
       inform: (sentence) => this.onInfo(sentence),
     });
@@ -136,7 +134,7 @@ export class Viewer {
       history: this.history,
       viewer: () => this.receivedHello?.viewer ?? "",
       viewState: () => (this.scene.value ? this.viewState() : null),
-      show: (view) => void this.show(view),
+      show: (view) => void this.viewRestore.show(view),
       reportFile: (error) => this.onFileError(error),
       sceneChanged: (info) => this.sceneChanged(info),
       report: (error) => this.report(error),
@@ -149,7 +147,7 @@ export class Viewer {
       latency: this.latency,
       history: this.history,
       moved: (camera, seq) => {
-        if (this.pendingViewState) this.pendingViewState.camera = camera;
+        if (this.viewRestore.pending) this.viewRestore.pending.camera = camera;
         const { eye, target, up, vertical_fov } = camera;
         this.connection.predict({ eye, target, up, vertical_fov, seq });
         this.responses.inputSent(seq, clockMs());
@@ -185,6 +183,23 @@ export class Viewer {
       },
       inform: (sentence) => this.onInfo(sentence),
     });
+    this.viewRestore = new ViewRestore({
+      rpc: this.rpc,
+      settings: this.settings,
+      capabilities: this.capabilities,
+      controlState: this.controlState,
+      hello: () => this.receivedHello,
+      ownsSession: (hello) =>
+        this.own.name === hello.session || this.sessionRestore.ownsSession(hello),
+      begins: () => {
+        if (this.connection.state.value.kind !== "live") this.frame.set(null);
+      },
+      arrived: (hello) => this.viewArrived(hello),
+      reportSkipped: (sentence) => this.onError(sentence),
+      reportFile: (error) => this.onFileError(error),
+      inform: (sentence) => this.onInfo(sentence),
+    });
+    this.restoring = this.viewRestore.running;
     this.stream = new StreamRequests(this.rpc, {
       mayResize: () => this.mayChange,
       report: (error) => this.report(error),
@@ -199,6 +214,7 @@ export class Viewer {
       this.connection.hold();
     });
     this.animation.watch(() => (this.animationReadAt = Date.now()));
+    this.settings.tree.watch(() => this.capabilities.settingsChanged());
   }
 
   get hello(): Hello | null {
@@ -236,12 +252,6 @@ export class Viewer {
     };
   }
 
-  /** Restores this state in the session. */
-  show(state: ViewState): Promise<void> {
-    this.pendingViewState = state;
-    return this.restorePendingViewState();
-  }
-
   /** Takes the state of the animation, unless a newer one came before. */
   onAnimationState(animation: AnimationState): void {
     if (animation.rev < this.animationRev) return;
@@ -250,7 +260,7 @@ export class Viewer {
   }
 
   private changeSession(): void {
-    this.pendingViewState = null;
+    this.viewRestore.pending = null;
     this.scene.set(null);
     this.frame.set(null);
     this.history.clear();
@@ -296,18 +306,19 @@ export class Viewer {
     // The server refuses to close it while other viewers are in it.
     const abandoned = this.own.takeAbandoned();
     if (abandoned !== null) this.rpc.notify("session.close", { session: abandoned });
-    this.pendingViewState = this.sessionRestore.pendingStateFor(hello, this.pendingViewState);
-    this.dropViewStateWithoutControl();
+    const restore = this.viewRestore;
+    restore.pending = this.sessionRestore.pendingStateFor(hello, restore.pending);
+    restore.dropWithoutControl();
     await Promise.all([
-      this.stream.begin(hello, this.pendingViewState !== null),
+      this.stream.begin(hello, restore.pending !== null),
       this.settings.load(),
       this.refreshScenes(),
       this.attempt(() => this.capabilities.readBuffers()),
       this.attempt(() => this.capabilities.read()),
       this.attempt(() => this.rpc.request("stats.subscribe", { interval_ms: statsIntervalMs })),
     ]);
-    if (this.pendingViewState) {
-      void this.attempt(() => this.restorePendingViewState());
+    if (restore.pending) {
+      void this.attempt(() => restore.restore());
     } else {
       this.connection.release({ oldestRev: 0, size: this.stream.requestedSize });
       await this.readScene();
@@ -315,37 +326,12 @@ export class Viewer {
     }
   }
 
-  /** Without control, the page shows what other viewers chose, not what its link says. */
-  private dropViewStateWithoutControl(): void {
-    if (!this.pendingViewState || this.mayChange) return;
-    this.pendingViewState = null;
-    this.onInfo(`Your view was not restored. ${describeControl(this.controlState.value)}`);
-  }
-
-  private async restorePendingViewState(): Promise<void> {
-    const { receivedHello: hello, pendingViewState: state } = this;
-    if (!hello || !state) return;
-    const host: RestoreHost = {
-      rpc: this.rpc,
-      schema: () => this.settings.schema.value,
-      supports: (method) => this.capabilities.has(method),
-      isCurrent: () => this.receivedHello === hello && this.pendingViewState === state,
-      reportSkipped: (sentence) => this.onError(sentence),
-      reportFile: (error) => this.onFileError(error),
-      ownsSession: () => this.own.name === hello.session || this.sessionRestore.ownsSession(hello),
-    };
-    this.restoring.set(true);
-    if (this.connection.state.value.kind !== "live") this.frame.set(null);
-    if (!(await restoreView(host, state))) return;
-    this.pendingViewState = null;
+  /** A whole view state is in effect. */
+  private async viewArrived(hello: Hello): Promise<void> {
     this.sessionRestore.arrived(hello);
-    try {
-      await Promise.all([this.settings.load(), this.refreshScenes(), this.readScene()]);
-      this.connection.release({ oldestRev: this.camera.value?.rev ?? 0 });
-      await this.stream.resume();
-    } finally {
-      this.restoring.set(false);
-    }
+    await Promise.all([this.settings.load(), this.refreshScenes(), this.readScene()]);
+    this.connection.release({ oldestRev: this.camera.value?.rev ?? 0 });
+    await this.stream.resume();
   }
 
   /** Reads scene, camera and animation; there may be no scene yet. */
@@ -375,7 +361,7 @@ export class Viewer {
   }
 
   /** All viewers get the same list; hello told which entry is this page. */
-  private setSession(session: SessionInfo): void {
+  setSession(session: SessionInfo): void {
     const own = this.receivedHello?.viewer;
     const viewers = session.viewers.map((viewer) => ({ ...viewer, you: viewer.viewer === own }));
     this.session.set({ ...session, viewers });
@@ -385,9 +371,9 @@ export class Viewer {
     this.stream.updateSize();
   }
 
-  private async sceneChanged(info: SceneInfo): Promise<void> {
+  async sceneChanged(info: SceneInfo): Promise<void> {
     // During a restore this may be an intermediate scene.
-    if (this.pendingViewState) return;
+    if (this.viewRestore.pending) return;
     this.scene.set(info);
     this.scenes.set({ ...this.scenes.value, current: info.name });
     await this.attempt(() => this.readScene());
@@ -403,6 +389,7 @@ export class Viewer {
     if (frame.codec === Codec.h264) this.stream.onVideoFrame();
     this.loading.frameDrawn(frame.stateRev);
     this.frame.set(frame);
+    void this.attempt(() => this.capabilities.frameDrawn());
   }
 
   /** In lockstep no frame comes before the next step. */
@@ -412,41 +399,16 @@ export class Viewer {
   }
 
   private notified(method: string, params: unknown): void {
-    const { schema } = this.settings;
-    const activity = activityOf(method, params, this.session.value, schema.value);
+    const activity = activityOf(method, params, this.session.value, this.settings.schema.value);
     if (activity) this.activity.set(activity);
-    switch (method) {
-      case "settings.changed":
-        this.settings.receive((params as Notifications["settings.changed"]).patch);
-        break;
-      case "camera.changed":
-        if (this.pendingViewState || this.cameraMoves.isBusy()) break;
-        this.connection.predict(null);
-        this.camera.set((params as Notifications["camera.changed"]).camera);
-        break;
-      case "animation.changed":
-        if (this.pendingViewState) break;
-        this.onAnimationState((params as Notifications["animation.changed"]).animation);
-        break;
-      case "scene.changed":
-        this.history.dropScene();
-        void this.sceneChanged((params as Notifications["scene.changed"]).scene);
-        break;
-      case "session.changed":
-        this.setSession(params as Notifications["session.changed"]);
-        break;
-      case "lights.changed":
-      case "materials.changed":
-      case "environment.changed":
-        this.parts.notified(method, params);
-        break;
-      case "scene.progress":
-        this.loading.progressed(params as Notifications["scene.progress"]);
-        break;
-      case "stats.frame":
-        this.stats.set(params as Notifications["stats.frame"]);
-        break;
-    }
+    receiveNotification(this, method, params);
+  }
+
+  /** Another viewer has moved the camera. */
+  takeCamera(camera: CameraPose): void {
+    if (this.viewRestore.pending || this.cameraMoves.isBusy()) return;
+    this.connection.predict(null);
+    this.camera.set(camera);
   }
 
   private async attempt(action: () => Promise<unknown>): Promise<void> {

@@ -138,6 +138,8 @@ function createWidget(control: Control, report: Report): Widget {
       return choice(control, report);
     case "text":
       return text(report);
+    case "color":
+      return color(report);
     case "json":
       return json(report);
   }
@@ -275,6 +277,11 @@ function text(report: Report): Widget {
       if (document.activeElement !== input) input.value = String(value ?? "");
     },
   };
+}
+
+function color(report: Report): Widget {
+  const input = element("input", { type: "color", class: "color", input: () => report(input.value) });
+  return { labelled: input, node: input, show: (value) => (input.value = String(value ?? "")) };
 }
 
 function json(report: Report): Widget {

@@ -5,6 +5,8 @@ import { element, setText } from "./element.ts";
 
 const delayMs = 450;
 const margin = 8;
+/** How soon a tip goes when what it explains does, without a movement of the pointer. */
+const checkMs = 200;
 
 export function mountTooltips(): void {
   const text = element("p");
@@ -14,10 +16,12 @@ export function mountTooltips(): void {
   tip.append(text, facts, path);
   document.body.append(tip);
   let timer = 0;
+  let check = 0;
   let owner: HTMLElement | null = null;
 
   const hide = (): void => {
     clearTimeout(timer);
+    clearInterval(check);
     owner?.querySelector("[aria-describedby=tooltip]")?.removeAttribute("aria-describedby");
     owner = null;
     tip.hidden = true;
@@ -32,6 +36,9 @@ export function mountTooltips(): void {
     path.hidden = !path.textContent;
     tip.hidden = false;
     place(tip, target);
+    check = window.setInterval(() => {
+      if (target.getClientRects().length === 0) hide();
+    }, checkMs);
     if (focused && focused !== target) focused.setAttribute("aria-describedby", "tooltip");
   };
   const ownerOf = (event: Event): HTMLElement | null =>

@@ -22,9 +22,9 @@ HWY_INLINE Float3 environment_direction(const shared::FrameConstants& frame, con
   return {hn::MulSub(c, world.x, s * world.z), world.y, hn::MulAdd(s, world.x, c * world.z)};
 }
 
-/// `map` toward `world`, filtered; repeats around the equator.
+/// `intensity` times the `map` toward `world`, filtered; repeats around the equator.
 HWY_INLINE Float3 radiance_from(const RadianceMap& map, const shared::FrameConstants& frame,
-                                const Float3& world) {
+                                const Float3& world, float intensity) {
   const Float3 d = environment_direction(frame, world);
   const int width = map.width, height = map.height;
   const Float u = angle_of(d.x, d.z) * number(0.5f * std::numbers::inv_pi_v<float>);
@@ -51,7 +51,7 @@ HWY_INLINE Float3 radiance_from(const RadianceMap& map, const shared::FrameConst
   const Float across = x - corner_x, down = y - corner_y;
   return mix(mix(texel(top, left), texel(top, right), across),
              mix(texel(bottom, left), texel(bottom, right), across), down) *
-         number(frame.environment_intensity);
+         number(intensity);
 }
 
 class EnvironmentLanes {
@@ -61,7 +61,7 @@ class EnvironmentLanes {
 
   /// What lights the scene.
   HWY_INLINE Float3 radiance(const Float3& world) const {
-    return radiance_from(environment_.radiance(), frame_, world);
+    return radiance_from(environment_.radiance(), frame_, world, frame_.environment_intensity);
   }
 
   /// GGX-prefiltered radiance about the reflected direction `world`.

@@ -12,9 +12,11 @@ gpu::ImageRef draw_skybox(gpu::FramePlan& plan, const FrameInputs& in, const GBu
   plan.pass("skybox", in.program(shaders::skybox))
       .bind<kernels::SkyboxBindings>({.motion = gbuffer.motion, .background = background})
       .dispatch(gpu::each_pixel())
-      .host([in](const kernels::SkyboxJob::Pass& pass) {
-        // What the eye sees is the environment as it was read: with its sun.
-        kernels::skybox({pass, in.constants, kernels::view_map(*in.moving.environment().source())});
+      .host([in, chosen = in.moving.environment().background(in.settings.background)](
+                const kernels::SkyboxJob::Pass& pass) {
+        // The environment is seen as it was read: with its sun.
+        const scene::Environment& seen = chosen ? chosen->map : *in.moving.environment().source();
+        kernels::skybox({pass, in.constants, kernels::view_map(seen)});
       });
   return background;
 }

@@ -50,6 +50,18 @@ EnvironmentView LitEnvironment::view(bool separate_sun) const {
   return {*background_, *maps_of_whole_, none};
 }
 
+std::shared_ptr<const Background> LitEnvironment::background(
+    const protocol::Settings::Background& chosen) const {
+  if (chosen.show == protocol::BackgroundKind::environment) return nullptr;
+  const std::lock_guard lock(mutex_);
+  if (!last_background_ || last_chosen_ != chosen) {
+    last_background_ =
+        std::make_shared<const Background>(device_, background_map(*source_, chosen));
+    last_chosen_ = chosen;
+  }
+  return last_background_;
+}
+
 std::shared_ptr<const LitEnvironment> EnvironmentCache::get(
     std::shared_ptr<const scene::Environment> environment) {
   const std::uint64_t content = content_hash(*environment);

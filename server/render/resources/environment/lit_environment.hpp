@@ -5,6 +5,7 @@
 #include <mutex>
 #include <optional>
 
+#include "render/resources/environment/background.hpp"
 #include "render/resources/environment/environment_prefilter.hpp"
 #include "scene/environment_sun.hpp"
 
@@ -28,6 +29,9 @@ class LitEnvironment {
   const std::shared_ptr<const scene::Environment>& source() const { return source_; }
   /// Where there is a sun, the first call that asks for it in the map filters that as well.
   EnvironmentView view(bool separate_sun) const;
+  /// What is seen in place of the environment; null where that is the environment as it is. The one
+  /// that was asked for last is kept.
+  std::shared_ptr<const Background> background(const protocol::Settings::Background& chosen) const;
 
  private:
   const gpu::Device& device_;
@@ -38,6 +42,8 @@ class LitEnvironment {
   std::optional<gpu::Image> background_;
   mutable std::mutex mutex_;
   mutable std::optional<EnvironmentMaps> maps_of_whole_;
+  mutable protocol::Settings::Background last_chosen_;
+  mutable std::shared_ptr<const Background> last_background_;
 };
 
 /// Filters every environment once, however many scenes and sessions show it: those of the same

@@ -47,7 +47,7 @@ std::vector<shared::Light> frame_lights(const gpu::Buffer& table,
     shared::Light light{};
     light.type = shared::light_directional;
     light.direction = -frame.sun_direction;
-    light.color = glm::vec3(frame.sun_irradiance);
+    light.color = frame.sun_irradiance;
     light.radius = frame.sun_radius;
     lights.push_back(light);
   }

@@ -1,6 +1,6 @@
 // The pixel inspector: a click on the view lists the value of every buffer there.
 
-import type { Inspection } from "heliograph/messages.ts";
+import type { Inspection, Pick } from "heliograph/messages.ts";
 import type { Viewer } from "../../session/viewer.ts";
 import type { PointPicker } from "../../view/picker.ts";
 import { element, setText } from "../../widgets/element.ts";
@@ -28,14 +28,22 @@ export function createInspector(viewer: Viewer, picker: PointPicker): HTMLElemen
     picker.mark(x, y);
     setText(position, "Reading the pixel values");
     try {
-      show(await viewer.queries.inspect(x, y));
+      const [inspection, surface] = await Promise.all([
+        viewer.queries.inspect(x, y),
+        viewer.queries.pick(x, y),
+      ]);
+      show(inspection, surface);
     } catch (error) {
       viewer.report(error);
     }
   };
-  const show = (inspection: Inspection): void => {
+  const show = (inspection: Inspection, surface: Pick | null): void => {
     setText(position, `Pixel ${inspection.column}, ${inspection.row}`);
     rows.replaceChildren(
+      ...describeSurface(surface).flatMap(([name, value]) => [
+        element("dt", {}, name),
+        element("dd", { "data-surface": name.toLowerCase() }, value),
+      ]),
       ...inspection.buffers.flatMap(({ name, value, unit }) => [
         element("dt", { "data-tip": name }, bufferLabel(name)),
         element(
@@ -60,6 +68,18 @@ export function createInspector(viewer: Viewer, picker: PointPicker): HTMLElemen
   );
   viewer.capabilities.methods.watch((methods) => (node.hidden = !methods.has("frame.inspect")));
   return node;
+}
+
+/** What is there, before the values of buffers. */
+function describeSurface(surface: Pick | null): [name: string, value: string][] {
+  if (!surface) return [["Object", "None: the background"]];
+  const { object, material, position, distance } = surface;
+  return [
+    ["Object", object ?? "Without a name"],
+    ["Material", material ?? "Without a name"],
+    ["Position", `${position?.map(formatValue).join("  ") ?? "–"} m`],
+    ["Distance", `${formatValue(distance)} m`],
+  ];
 }
 
 function formatValue(value: number | null): string {

@@ -16,7 +16,7 @@ export function createEnvironmentField(parts: SceneParts): HTMLElement {
     node.hidden = !state || state.environments.length === 0;
     if (!state) return;
     setOptions(select, [
-      { value: withScene, label: "From the scene file" },
+      { value: withScene, label: "Automatic" },
       ...state.environments.map(({ name }) => ({ value: name, label: name })),
     ]);
     select.value = state.current ?? withScene;

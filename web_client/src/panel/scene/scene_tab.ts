@@ -10,10 +10,11 @@ import { createEnvironmentField } from "./environment_field.ts";
 import { createLightSection } from "./light_section.ts";
 import { createMaterialSection } from "./material_section.ts";
 import { createPartFields } from "./part_fields.ts";
+import { createQualityField } from "./quality_field.ts";
 import { createScenePicker } from "./scene_picker.ts";
 
 /** Groups of settings that are shown here instead of in the Settings tab. */
-export const appearanceGroups = ["exposure", "tone_map", "environment"];
+export const appearanceGroups = ["exposure", "tone_map", "environment", "background"];
 
 export function createSceneTab(viewer: Viewer, upload: (file: File) => void): HTMLElement {
   const facts = element("p", { class: "facts" });
@@ -29,6 +30,7 @@ export function createSceneTab(viewer: Viewer, upload: (file: File) => void): HT
     element(
       "div",
       { class: "fields", "data-section": "scene" },
+      createQualityField(viewer),
       ...createScenePicker(viewer, upload),
       facts,
       warnings,

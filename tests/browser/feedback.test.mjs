@@ -1,0 +1,103 @@
+// What the page tells without being asked: refinement, gestures, tooltips, the list of buffers.
+
+import assert from "node:assert/strict";
+import { eventually, openTab, screenshot } from "./harness/browser.mjs";
+import { Stage } from "./harness/stage.mjs";
+
+const stage = new Stage({ scene: "mirror", view: { viewport: { width: 720, height: 405 } } });
+
+stage.test("a static view says how far it is refined, and nothing once it has converged", async () => {
+  const { page } = await stage.watch();
+  const indicator = page.locator("#refining");
+  await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 4096 } } });
+  await stage.server.call("camera.orbit", { yaw: 10, pitch: 0 });
+  await indicator.getByText(/^\d+ of 4096 samples$/).waitFor();
+  await screenshot(page, "refining");
+  const counted = async () => Number.parseInt(await indicator.textContent(), 10);
+  const before = await counted();
+  await eventually(async () => (await counted()) > before, "more samples");
+  await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 2 } } });
+  await indicator.waitFor({ state: "hidden" });
+});
+
+stage.test("on a touch screen the help begins with gestures, elsewhere with the mouse", async () => {
+  for (const [hasTouch, first] of [
+    [true, "Touch"],
+    [false, "Mouse"],
+  ]) {
+    const touch = { hasTouch, isMobile: hasTouch, viewport: { width: 390, height: 844 } };
+    const { page } = await stage.watch(hasTouch ? touch : {});
+    await page.keyboard.press("?");
+    const titles = page.locator("#help h2");
+    await titles.first().waitFor();
+    assert.equal(await titles.first().textContent(), first);
+    await screenshot(page, `help_${first.toLowerCase()}`);
+  }
+});
+
+stage.test("a tooltip goes with what it explains, and with Escape", async () => {
+  const { page } = await stage.watch();
+  const tip = page.getByRole("tooltip");
+  const help = page.getByRole("button", { name: "Help (?)" });
+  await help.hover();
+  await tip.getByText("Help (?)").waitFor();
+  await page.evaluate(() => (document.querySelector("#panel").hidden = true));
+  await tip.waitFor({ state: "hidden" });
+  await page.evaluate(() => (document.querySelector("#panel").hidden = false));
+  await page.mouse.move(10, 10);
+  await help.hover();
+  await tip.getByText("Help (?)").waitFor();
+  await page.keyboard.press("Escape");
+  await tip.waitFor({ state: "hidden" });
+});
+
+stage.test("the list of buffers follows the settings", async () => {
+  const { page } = await stage.watch();
+  await openTab(page, "inspect");
+  const names = () =>
+    page
+      .locator("select[name=buffer] option")
+      .evaluateAll((options) => options.map(({ value }) => value));
+  const reflections = async () => (await names()).some((name) => name.startsWith("specular."));
+  assert.ok(await reflections());
+  // By another client, and by this page.
+  await stage.server.call("settings.patch", { patch: { specular: { enabled: false } } });
+  await eventually(async () => !(await reflections()), "a list without reflections");
+  await stage.server.call("settings.patch", { patch: { specular: { enabled: true } } });
+  await eventually(reflections, "a list with reflections");
+});
+
+stage.test("the first visit tells how to move, until the view is moved", async () => {
+  const context = await stage.context();
+  const { page } = await stage.watch({ context });
+  const hint = page.getByText(/^Drag to orbit, wheel to zoom/);
+  await hint.waitFor();
+  await screenshot(page, "first_hint");
+  await page.locator("#view").focus();
+  await page.keyboard.press("ArrowLeft", { delay: 50 });
+  await hint.waitFor({ state: "hidden" });
+  const { page: again } = await stage.watch({ context });
+  assert.equal(await again.getByText(/^Drag to orbit/).count(), 0);
+});
+
+stage.test("quality is the first control: draft, balanced or best", async () => {
+  await stage.server.call("settings.patch", { patch: { accumulation: null } });
+  const { page } = await stage.watch();
+  const quality = page.getByRole("group", { name: "Quality" });
+  const pressed = () =>
+    quality.locator("[aria-pressed=true]").evaluateAll((all) => all.map((one) => one.textContent));
+  assert.deepEqual(await pressed(), ["Balanced"]);
+  const first = page.locator("#page-scene .field").first();
+  assert.ok(await first.getByText("Quality").isVisible(), "it is not the first");
+  await quality.getByRole("button", { name: "Draft" }).click();
+  await eventually(
+    async () => (await stage.server.setting("accumulation.max_samples")) === 8,
+    "few samples",
+  );
+  assert.equal(await stage.server.setting("indirect.enabled"), false);
+  assert.deepEqual(await pressed(), ["Draft"]);
+  await screenshot(page, "quality");
+  await quality.getByRole("button", { name: "Balanced" }).click();
+  await eventually(async () => await stage.server.setting("indirect.enabled"), "indirect light");
+  assert.deepEqual(await pressed(), ["Balanced"]);
+});

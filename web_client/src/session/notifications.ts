@@ -1,0 +1,63 @@
+// What the server's notifications change on the page.
+
+import type {
+  AnimationState,
+  FrameStats,
+  Notifications,
+  SceneInfo,
+  SessionInfo,
+} from "heliograph/messages.ts";
+import type { CameraPose } from "../common/camera_pose.ts";
+import type { Signal } from "../common/signal.ts";
+import type { SceneLoading } from "./scene_loading.ts";
+import type { SceneParts } from "./scene_parts.ts";
+import type { SettingsStore } from "./settings_store.ts";
+import type { UndoHistory } from "./undo_history.ts";
+import type { ViewRestore } from "./view_restore.ts";
+
+interface Targets {
+  settings: SettingsStore;
+  parts: SceneParts;
+  loading: SceneLoading;
+  history: UndoHistory;
+  stats: Signal<FrameStats | null>;
+  viewRestore: ViewRestore;
+  takeCamera(camera: CameraPose): void;
+  onAnimationState(animation: AnimationState): void;
+  sceneChanged(scene: SceneInfo): Promise<void>;
+  setSession(session: SessionInfo): void;
+}
+
+export function receiveNotification(targets: Targets, method: string, params: unknown): void {
+  switch (method) {
+    case "settings.changed":
+      targets.settings.receive((params as Notifications["settings.changed"]).patch);
+      break;
+    case "camera.changed":
+      targets.takeCamera((params as Notifications["camera.changed"]).camera);
+      break;
+    case "animation.changed":
+      // The state that is being restored has a clip of its own.
+      if (targets.viewRestore.pending) break;
+      targets.onAnimationState((params as Notifications["animation.changed"]).animation);
+      break;
+    case "scene.changed":
+      targets.history.dropScene();
+      void targets.sceneChanged((params as Notifications["scene.changed"]).scene);
+      break;
+    case "session.changed":
+      targets.setSession(params as Notifications["session.changed"]);
+      break;
+    case "lights.changed":
+    case "materials.changed":
+    case "environment.changed":
+      targets.parts.notified(method, params);
+      break;
+    case "scene.progress":
+      targets.loading.progressed(params as Notifications["scene.progress"]);
+      break;
+    case "stats.frame":
+      targets.stats.set(params as Notifications["stats.frame"]);
+      break;
+  }
+}
