@@ -26,21 +26,23 @@ std::vector<std::uint8_t> without_alpha(const ImageView& image) {
 
 }  // namespace
 
-std::vector<std::uint8_t> encode_png(const ImageView& image) {
+std::vector<std::uint8_t> encode_png(const ImageView& image, Alpha alpha) {
   if (!image.complete()) throw std::runtime_error("PNG: the image is incomplete");
-  const std::vector<std::uint8_t> rgb = without_alpha(image);
+  std::vector<std::uint8_t> rgb;
+  if (alpha == Alpha::ignored) rgb = without_alpha(image);
 
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = image.width;
   png.height = image.height;
-  png.format = PNG_FORMAT_RGB;
+  png.format = alpha == Alpha::kept ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
   png.flags = PNG_IMAGE_FLAG_FAST;
   const std::unique_ptr<png_image, PngFree> cleanup(&png);
 
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
   std::vector<std::uint8_t> file(size);
-  if (!png_image_write_to_memory(&png, file.data(), &size, 0, rgb.data(), 0, nullptr)) {
+  const std::uint8_t* const pixels = alpha == Alpha::kept ? image.rgba.data() : rgb.data();
+  if (!png_image_write_to_memory(&png, file.data(), &size, 0, pixels, 0, nullptr)) {
     throw std::runtime_error(std::string("PNG: ") + png.message);
   }
   file.resize(size);

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/options.hpp"
+#include "cli/render/background.hpp"
+#include "cli/render/output_name.hpp"
+#include "protocol/messages/render_messages.hpp"
+#include "protocol/settings/settings.hpp"
+
+namespace heliograph::cli {
+
+/// One entry of a command or of a manifest, checked as far as that is possible without its scene.
+struct RenderTask {
+  std::size_t number;  // from 1 on, in the whole manifest
+  protocol::RenderRequest request;
+  OutputName output;
+  protocol::FileFormat format;
+  protocol::Settings settings;
+  Background background;
+};
+
+/// Whether a file of this format holds all frames of a camera.
+bool holds_frames(protocol::FileFormat format);
+
+/// The share of the whole that a process renders: entries `first`, `first + step` ... from 0 on.
+struct Shard {
+  std::size_t first = 0;
+  std::size_t step = 1;
+};
+
+/// "2/4"; empty: everything. @throws std::invalid_argument
+Shard parse_shard(const std::string& text);
+
+/// The entries that the options name, of their shard.
+/// @throws std::invalid_argument, std::runtime_error naming the option, or the manifest's entry
+std::vector<RenderTask> make_tasks(const RenderOptions& options);
+
+}  // namespace heliograph::cli
