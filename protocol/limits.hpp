@@ -42,6 +42,12 @@ inline constexpr double min_clip_rate = 0.1;
 inline constexpr double max_clip_rate = 1000.0;
 /// Time in a clip, seconds.
 inline constexpr double max_clip_time = 1e6;
+/// Expected structural similarity at which an image is good enough.
+inline constexpr double min_similarity = 0.1;
+inline constexpr double max_similarity = 0.999;
+/// Of an image, seconds.
+inline constexpr double min_time_limit = 0.01;
+inline constexpr double max_time_limit = 86400.0;
 inline constexpr std::size_t max_path = 4096;  // files and templates of their names; bytes
 
 }  // namespace heliograph::protocol

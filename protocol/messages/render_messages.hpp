@@ -60,6 +60,8 @@ struct RenderRequest {
   double fps = 30.0;
   std::optional<std::uint32_t> frames;
   std::optional<std::uint32_t> samples;
+  std::optional<double> quality;
+  std::optional<double> time_limit;
   std::optional<ReferenceScope> reference;
   std::string preset;
   std::optional<RawJson> settings;
@@ -106,6 +108,12 @@ struct RenderRequest {
         field("samples", &RenderRequest::samples,
               "Samples per pixel; absent: accumulation.max_samples.")
             .range(1, max_samples_per_pixel),
+        field("quality", &RenderRequest::quality,
+              "Ends an image when its expected structural similarity to the converged one is this.")
+            .range(min_similarity, max_similarity),
+        field("time_limit", &RenderRequest::time_limit, "Ends an image after so long.")
+            .range(min_time_limit, max_time_limit)
+            .unit("seconds"),
         field("reference", &RenderRequest::reference,
               "Path traces these light paths; absent: the hybrid renderer."),
         field("preset", &RenderRequest::preset, "Preset of the denoiser; empty: none.")

@@ -17,7 +17,7 @@ constexpr const char* columns =
     "id, name, state, priority, entries, images_done, images, attempts, created, started, ended, "
     "expires";
 
-/// 64 random bits: whoever knows an id knows it from the server.
+/// 64 random bits: ids cannot be guessed.
 std::string random_id() {
   std::random_device random;
   constexpr std::string_view digits = "0123456789abcdef";
@@ -40,8 +40,7 @@ bool is_unreserved(char c) {
          std::string_view("-._~/").find(c) != std::string_view::npos;
 }
 
-}  // namespace
-
+/// The path of a job's file on the server.
 std::string file_url(const std::string& id, const std::string& name) {
   constexpr std::string_view digits = "0123456789ABCDEF";
   std::string url = "/api/v1/jobs/" + id + "/files/";
@@ -55,6 +54,8 @@ std::string file_url(const std::string& id, const std::string& name) {
   }
   return url;
 }
+
+}  // namespace
 
 JobStore::JobStore(const std::filesystem::path& file) : database_(file) {
   create_tables();

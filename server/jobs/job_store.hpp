@@ -73,7 +73,4 @@ class JobStore {
   Database database_;
 };
 
-/// The path of a job's file on the server.
-std::string file_url(const std::string& id, const std::string& name);
-
 }  // namespace heliograph::jobs

@@ -10,8 +10,8 @@
 #include <string>
 #include <utility>
 
-#include "stream/encoders/video_file.hpp"
 #include "stream/encoders/webp_encoder.hpp"
+#include "stream/video/video_file.hpp"
 
 namespace heliograph::cli {
 namespace {

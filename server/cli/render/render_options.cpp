@@ -103,6 +103,13 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options) {
   command->add_option("--samples", request.samples, "Samples per pixel [accumulation.max_samples]")
       ->check(CLI::Range(1u, protocol::max_samples_per_pixel));
   command
+      ->add_option("--quality", request.quality,
+                   "End an image when its expected structural similarity to the converged one is "
+                   "this, such as 0.98")
+      ->check(CLI::Range(protocol::min_similarity, protocol::max_similarity));
+  command->add_option("--time-limit", request.time_limit, "End an image after so many seconds")
+      ->check(CLI::Range(protocol::min_time_limit, protocol::max_time_limit));
+  command
       ->add_option("--reference", options.reference,
                    "Path trace instead: the hybrid's own light paths (same_paths) or all (full)")
       ->check(one_of({"same_paths", "full"}));

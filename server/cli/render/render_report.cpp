@@ -1,6 +1,7 @@
 #include "cli/render/render_report.hpp"
 
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 
 #include "protocol/json/raw_json.hpp"

@@ -1,6 +1,7 @@
 #include "cli/render/render_scene.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include "cli/engine_options.hpp"
 #include "cli/render/output_file.hpp"
+#include "cli/render/quality.hpp"
 #include "cli/render/render_plan.hpp"
 #include "cli/render/render_timings.hpp"
 #include "protocol/limits.hpp"
@@ -59,6 +61,11 @@ void set_up_device(RenderContext& context) {
   if (const std::string error = context.engine->shader_error(); !error.empty()) {
     throw std::runtime_error(error);
   }
+}
+
+bool shows(const SceneInUse& scene, const protocol::RenderRequest& request) {
+  return scene.resources && scene.file == request.scene &&
+         scene.environment == request.environment && scene.variant == request.variant;
 }
 
 /// A file and its images: one, or all of a camera.
@@ -126,18 +133,42 @@ void check_buffer(const render::Renderer& renderer, const std::string& name) {
   throw std::runtime_error("--buffer: frames of this scene with these settings have no " + name);
 }
 
+/// When an image is complete: converged, or good enough, or late.
+class ImageEnd {
+ public:
+  explicit ImageEnd(const protocol::RenderRequest& request) : request_(request) {}
+
+  bool reached(const render::Frame& frame) {
+    if (frame.converged || frame.samples >= request_.samples.value_or(most_samples)) return true;
+    if (request_.time_limit && Clock::now() - begin_ >= Seconds(*request_.time_limit)) return true;
+    if (!request_.quality || !estimate_.wants(frame.samples)) return false;
+    const auto similarity = estimate_.add(frame.rgba, frame.width, frame.samples);
+    return similarity && *similarity >= *request_.quality;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using Seconds = std::chrono::duration<double>;
+  static constexpr std::uint32_t most_samples = protocol::max_samples_per_pixel;
+
+  const protocol::RenderRequest& request_;
+  const Clock::time_point begin_ = Clock::now();
+  QualityEstimate estimate_;
+};
+
 session::CaptureContent render_image(RenderContext& context, render::Renderer& renderer,
                                      const RenderTask& task) {
   const auto canceled = [&] { return context.canceled.load(); };
   std::uint32_t samples = 0;
-  bool converged = false;
+  bool complete = false;
   Coverage coverage;
-  while (!converged && samples < task.request.samples.value_or(protocol::max_samples_per_pixel)) {
+  ImageEnd end(task.request);
+  while (!complete) {
     const std::optional<render::Frame> frame = renderer.render(canceled);
     if (!frame || canceled()) throw RenderCanceled();
     samples = frame->samples;
-    converged = frame->converged;
     if (!task.background.is_sky()) coverage.add(renderer, *frame);
+    complete = end.reached(*frame);
   }
   context.report.image(samples);
   auto content =
@@ -220,7 +251,7 @@ std::size_t expected_images(const RenderTask& task) {
 void render_task(RenderContext& context, const RenderTask& task) {
   const protocol::RenderRequest& request = task.request;
   std::unique_ptr<scene::Scene> read;
-  if (!context.scene.is_of(request)) read = read_scene(context, task);
+  if (!shows(context.scene, request)) read = read_scene(context, task);
   const scene::Scene& scene = read ? *read : *render::scene_of(*context.scene.resources);
   const std::vector<Shot> shots = plan_shots(scene, request);
   const std::vector<PlannedFile> files = plan_files(context, task, shots);

@@ -21,11 +21,6 @@ struct SceneInUse {
   std::string environment;
   std::string variant;
   std::shared_ptr<const render::SceneResources> resources;
-
-  bool is_of(const protocol::RenderRequest& request) const {
-    return resources && file == request.scene && environment == request.environment &&
-           variant == request.variant;
-  }
 };
 
 /// What the entries of one command share. The device is set up for the first scene that can be

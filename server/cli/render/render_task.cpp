@@ -13,6 +13,7 @@
 
 #include "cli/engine_options.hpp"
 #include "cli/render/manifest.hpp"
+#include "protocol/limits.hpp"
 #include "protocol/settings/presets.hpp"
 #include "protocol/settings/settings_json.hpp"
 #include "render/api/buffer_names.hpp"
@@ -60,7 +61,11 @@ protocol::Settings settings_of(const protocol::RenderRequest& request,
     settings.reference.use = protocol::ReferenceUse::always;
     settings.reference.scope = *request.reference;
   }
-  if (request.samples) settings.accumulation.max_samples = static_cast<int>(*request.samples);
+  const bool ends_otherwise = request.quality || request.time_limit;
+  if (request.samples || ends_otherwise) {
+    const std::uint32_t samples = request.samples.value_or(protocol::max_samples_per_pixel);
+    settings.accumulation.max_samples = static_cast<int>(samples);
+  }
   return settings;
 }
 
@@ -108,6 +113,9 @@ void check_combination(const protocol::RenderRequest& request, bool timings) {
   }
   if (request.view && !request.camera.empty()) {
     throw std::invalid_argument("view: camera names another one");
+  }
+  if (request.quality && request.buffer != "output") {
+    throw std::invalid_argument("--quality: is that of the output, not of " + request.buffer);
   }
   const auto named = render::check_buffer_name(request.buffer, "--buffer");
   if (!named) throw std::invalid_argument(named.error().message);
@@ -186,13 +194,13 @@ void check_set(const RenderOptions& options) {
   }
 }
 
-}  // namespace
+/// The share of the whole that a process renders: entries `first`, `first + step` ... from 0 on.
+struct Shard {
+  std::size_t first = 0;
+  std::size_t step = 1;
+};
 
-bool holds_frames(FileFormat format) {
-  return format == FileFormat::mp4 || format == FileFormat::webm ||
-         format == FileFormat::animated_webp;
-}
-
+/// "2/4"; empty: everything.
 Shard parse_shard(const std::string& text) {
   if (text.empty()) return {};
   std::size_t number = 0, count = 0;
@@ -204,6 +212,13 @@ Shard parse_shard(const std::string& text) {
     throw std::invalid_argument("--shard " + text + ": must be I/N, 1/N to N/N");
   }
   return {.first = number - 1, .step = count};
+}
+
+}  // namespace
+
+bool holds_frames(FileFormat format) {
+  return format == FileFormat::mp4 || format == FileFormat::webm ||
+         format == FileFormat::animated_webp;
 }
 
 std::vector<RenderTask> make_tasks(const RenderOptions& options) {

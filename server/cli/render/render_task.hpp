@@ -26,15 +26,6 @@ struct RenderTask {
 /// Whether a file of this format holds all frames of a camera.
 bool holds_frames(protocol::FileFormat format);
 
-/// The share of the whole that a process renders: entries `first`, `first + step` ... from 0 on.
-struct Shard {
-  std::size_t first = 0;
-  std::size_t step = 1;
-};
-
-/// "2/4"; empty: everything. @throws std::invalid_argument
-Shard parse_shard(const std::string& text);
-
 /// The entries that the options name, of their shard.
 /// @throws std::invalid_argument, std::runtime_error naming the option, or the manifest's entry
 std::vector<RenderTask> make_tasks(const RenderOptions& options);

@@ -1,6 +1,8 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -99,7 +101,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     parser_.emplace();
     parser_->header_limit(max_request_head_bytes);
     // The head decides what the body may have.
-    parser_->body_limit(boost::none);
+    parser_->body_limit(std::numeric_limits<std::uint64_t>::max());
     // The first request has a short timeout, later ones of a kept-alive connection a longer one.
     stream_.next_layer().expires_after(std::exchange(first_, false) ? handshake_timeout
                                                                     : idle_timeout);

@@ -19,31 +19,31 @@ WebPConfig webp_config(int quality) {
 }
 
 /// An image of the library, in its own memory.
-class WebpPicture {
+class WebpImage {
  public:
-  WebpPicture(const ImageView& image, Alpha alpha) {
+  WebpImage(const ImageView& image, Alpha alpha) {
     if (!image.complete()) throw std::runtime_error("WebP: the image is incomplete");
     if (image.width > WEBP_MAX_DIMENSION || image.height > WEBP_MAX_DIMENSION) {
       throw std::runtime_error("WebP: images have at most " + std::to_string(WEBP_MAX_DIMENSION) +
                                " pixels in width and height");
     }
-    if (!WebPPictureInit(&picture_)) {
+    if (!WebPPictureInit(&pixels_)) {
       throw std::runtime_error("WebP: another version of the library");
     }
-    picture_.use_argb = 1;
-    picture_.width = static_cast<int>(image.width);
-    picture_.height = static_cast<int>(image.height);
+    pixels_.use_argb = 1;
+    pixels_.width = static_cast<int>(image.width);
+    pixels_.height = static_cast<int>(image.height);
     const auto import = alpha == Alpha::kept ? WebPPictureImportRGBA : WebPPictureImportRGBX;
-    if (!import(&picture_, image.rgba.data(), 4 * picture_.width)) throw std::bad_alloc();
+    if (!import(&pixels_, image.rgba.data(), 4 * pixels_.width)) throw std::bad_alloc();
   }
-  ~WebpPicture() { WebPPictureFree(&picture_); }
-  WebpPicture(const WebpPicture&) = delete;
-  WebpPicture& operator=(const WebpPicture&) = delete;
+  ~WebpImage() { WebPPictureFree(&pixels_); }
+  WebpImage(const WebpImage&) = delete;
+  WebpImage& operator=(const WebpImage&) = delete;
 
-  WebPPicture& get() { return picture_; }
+  WebPPicture& get() { return pixels_; }
 
  private:
-  WebPPicture picture_;
+  WebPPicture pixels_;
 };
 
 struct AnimationDeleter {
@@ -53,16 +53,16 @@ struct AnimationDeleter {
 }  // namespace
 
 std::vector<std::uint8_t> encode_webp(const ImageView& image, int quality, Alpha alpha) {
-  WebpPicture picture(image, alpha);
+  WebpImage pixels(image, alpha);
   const WebPConfig config = webp_config(quality);
   WebPMemoryWriter writer;
   WebPMemoryWriterInit(&writer);
   const std::unique_ptr<WebPMemoryWriter, void (*)(WebPMemoryWriter*)> cleanup(
       &writer, WebPMemoryWriterClear);
-  picture.get().writer = WebPMemoryWrite;
-  picture.get().custom_ptr = &writer;
-  if (!WebPEncode(&config, &picture.get())) {
-    throw std::runtime_error("WebP: error " + std::to_string(picture.get().error_code));
+  pixels.get().writer = WebPMemoryWrite;
+  pixels.get().custom_ptr = &writer;
+  if (!WebPEncode(&config, &pixels.get())) {
+    throw std::runtime_error("WebP: error " + std::to_string(pixels.get().error_code));
   }
   return {writer.mem, writer.mem + writer.size};
 }
@@ -102,9 +102,9 @@ WebpAnimation::WebpAnimation(std::uint32_t width, std::uint32_t height, double f
 WebpAnimation::~WebpAnimation() = default;
 
 void WebpAnimation::add(const ImageView& image) {
-  WebpPicture picture(image, state_->alpha);
+  WebpImage pixels(image, state_->alpha);
   state_->check(
-      WebPAnimEncoderAdd(state_->encoder.get(), &picture.get(), state_->time(), &state_->config));
+      WebPAnimEncoderAdd(state_->encoder.get(), &pixels.get(), state_->time(), &state_->config));
   ++state_->frames;
 }
 

@@ -13,7 +13,7 @@ namespace heliograph::stream {
 std::vector<std::uint8_t> encode_webp(const ImageView& image, int quality,
                                       Alpha alpha = Alpha::ignored);
 
-/// Animated WebP, repeated forever. All frames have one size.
+/// Animated WebP, repeated without end. All frames have one size.
 class WebpAnimation {
  public:
   /// @throws std::runtime_error if the library cannot be initialized

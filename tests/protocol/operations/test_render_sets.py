@@ -8,6 +8,8 @@ import subprocess
 import tempfile
 import unittest
 
+import numpy
+
 from harness.images import decode_png
 from harness.models import Model
 
@@ -167,9 +169,12 @@ class RenderSets(unittest.TestCase):
             {"scene": "scene.glb", "width": 32, "height": 16, "samples": 2, "output": "front.png",
              "background": "#00ff00"}]))
         self.assertEqual((code, err), (0, ""))
-        self.assertEqual(decode_png(self.bytes_of("green.png")).mean(), [0, 255, 0])
+        green = bytes([0, 255, 0])
+        self.assertEqual(bytes(decode_png(self.bytes_of("green.png")).rgb), 32 * 16 * green)
         self.assertIn(b"ALPH", self.bytes_of("clear.webp"))
-        self.assertNotEqual(decode_png(self.bytes_of("front.png")).mean(), [0, 255, 0])
+        front = bytes(decode_png(self.bytes_of("front.png")).rgb)
+        shown = sum(front[i:i + 3] == green for i in range(0, len(front), 3))
+        self.assertTrue(10 < shown < 32 * 16 - 10, shown)
 
     def test_a_turntable_is_a_video(self):
         for name, beginning in (("turn.mp4", b"ftyp"), ("turn.webm", b"\x1a\x45\xdf\xa3")):
@@ -187,3 +192,35 @@ class RenderSets(unittest.TestCase):
                  "stream=nb_read_frames,codec_name,width,r_frame_rate", "-of", "csv=p=0", self.path("turn.mp4")],
                 capture_output=True, text=True, check=True).stdout.strip()
             self.assertEqual(found, "h264,64,30/1,5")
+
+    def test_quality_is_that_of_the_converged_image(self):
+        common = {"scene": self.mirror, "width": 96, "reference": "full"}
+        code, _, err = self.run_render("--manifest", self.manifest([
+            {**common, "output": "truth.png", "samples": 2048},
+            {**common, "output": "low.png", "quality": 0.8},
+            {**common, "output": "high.png", "quality": 0.95},
+            {**common, "output": "late.png", "time_limit": 0.01}]), "--report", "report.json")
+        self.assertEqual((code, err), (0, ""))
+        low, high, late = (entry["samples"] for entry in json.loads(self.bytes_of("report.json"))["entries"][1:])
+        self.assertLess(low, high)
+        self.assertLess(high, 2048)
+        self.assertLess(late, 64)
+        truth = self.luma("truth.png")
+        for name, asked in (("low.png", 0.8), ("high.png", 0.95)):
+            self.assertGreater(similarity(truth, self.luma(name)), asked - 0.02, name)
+
+    def luma(self, name):
+        image = decode_png(self.bytes_of(name))
+        rgb = numpy.frombuffer(bytes(image.rgb), dtype=numpy.uint8).reshape(image.height, image.width, 3)
+        return rgb @ numpy.array([0.299, 0.587, 0.114])
+
+
+def similarity(a, b):
+    """The structural similarity over windows of 8 x 8 pixels."""
+    c1, c2 = (0.01 * 255) ** 2, (0.03 * 255) ** 2
+    windows = numpy.lib.stride_tricks.sliding_window_view
+    u, v = (windows(image, (8, 8))[::4, ::4].reshape(-1, 64) for image in (a, b))
+    mu, mv = u.mean(axis=1), v.mean(axis=1)
+    covariance = ((u - mu[:, None]) * (v - mv[:, None])).mean(axis=1)
+    return numpy.mean((2 * mu * mv + c1) * (2 * covariance + c2) /
+                      ((mu ** 2 + mv ** 2 + c1) * (u.var(axis=1) + v.var(axis=1) + c2)))

@@ -1,4 +1,4 @@
-#include "stream/encoders/video_file.hpp"
+#include "stream/video/video_file.hpp"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

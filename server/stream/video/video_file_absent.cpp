@@ -1,7 +1,7 @@
 // Replaces video_file.cpp in builds without libavformat.
 #include <stdexcept>
 
-#include "stream/encoders/video_file.hpp"
+#include "stream/video/video_file.hpp"
 
 namespace heliograph::stream {
 
