@@ -1,6 +1,9 @@
 #include "net/http/beast_messages.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace heliograph::net {
@@ -63,7 +66,9 @@ BeastResponse to_message(ServerContext& context, HttpResponse answer, const Fram
   BeastResponse message;
   set_head(message, context, answer, framing);
   if (is_bare(answer.status)) return message;
-  message.content_length(answer.body.size());
+  std::error_code gone;
+  const std::uintmax_t file_bytes = std::filesystem::file_size(answer.file, gone);
+  message.content_length(answer.file.empty() || gone ? answer.body.size() : file_bytes);
   if (!framing.head_only) message.body() = std::move(answer.body);
   return message;
 }

@@ -1,7 +1,10 @@
 #include "net/http/job_routes.hpp"
 
-#include <algorithm>
+#include <spdlog/spdlog.h>
+
 #include <array>
+#include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -60,8 +63,7 @@ HttpResponse create_job(const HttpRequest& request, jobs::JobQueue& jobs) {
     }
     create->key = std::string(key);
   }
-  HttpResponse response = as_json<methods::job_create>(jobs.create(*create), 202);
-  return response;
+  return as_json<methods::job_create>(jobs.create(*create), 202);
 }
 
 HttpResponse list_jobs(const HttpRequest& request, jobs::JobQueue& jobs) {
@@ -103,6 +105,17 @@ HttpResponse only(std::string allowed) {
   return response;
 }
 
+HttpResponse answer(const HttpRequest& request, const JobAddress& address, jobs::JobQueue& jobs) {
+  const bool reads = request.method == "GET" || request.method == "HEAD";
+  if (address.id.empty()) {
+    if (request.method == "POST") return create_job(request, jobs);
+    return reads ? list_jobs(request, jobs) : only("GET and POST");
+  }
+  if (!address.file.empty()) return reads ? job_file(address, jobs) : only("GET");
+  if (request.method == "DELETE") return as_json<methods::job_cancel>(jobs.cancel(address.id));
+  return reads ? as_json<methods::job_status>(jobs.status(address.id)) : only("GET and DELETE");
+}
+
 }  // namespace
 
 bool is_job_path(std::string_view path) {
@@ -117,13 +130,13 @@ HttpResponse answer_job(const HttpRequest& request, jobs::JobQueue* jobs, Role r
   if (!reads && role != Role::control) {
     return text_response(403, "This token is read-only and cannot change jobs.");
   }
-  if (address->id.empty()) {
-    if (request.method == "POST") return create_job(request, *jobs);
-    return reads ? list_jobs(request, *jobs) : only("GET and POST");
+  try {
+    return answer(request, *address, *jobs);
+  } catch (const std::runtime_error& failure) {
+    // The disk is full, or fails: the sessions go on.
+    spdlog::error("jobs: {}", failure.what());
+    return text_response(503, "The database of jobs cannot be used; see the server's log.");
   }
-  if (!address->file.empty()) return reads ? job_file(*address, *jobs) : only("GET");
-  if (request.method == "DELETE") return as_json<methods::job_cancel>(jobs->cancel(address->id));
-  return reads ? as_json<methods::job_status>(jobs->status(address->id)) : only("GET and DELETE");
 }
 
 }  // namespace heliograph::net

@@ -119,7 +119,8 @@ class Jobs(ServerTestCase):
         self.assertEqual((status, fields["content-type"]), (200, "image/png"))
         self.assertEqual(len(image), done["files"][1]["bytes"])
         self.assertEqual(decode_png(image).width, 48)
-        self.assertEqual(self.client.request("HEAD", done["files"][1]["url"])[0], 200)
+        status, fields, nothing = self.client.request("HEAD", done["files"][1]["url"])
+        self.assertEqual((status, fields["content-length"], nothing), (200, str(len(image)), b""))
         self.assertGreater(done["expires"], time.time() + 86400)
 
     def test_what_cannot_be_rendered_is_refused_or_fails_alone(self):
