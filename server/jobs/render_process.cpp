@@ -39,8 +39,10 @@ struct Pipe {
 [[noreturn]] void become_renderer(char* const* arguments, const char* folder, int output,
                                   int error) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
-  const struct sched_param idle {};
-  sched_setscheduler(0, SCHED_IDLE, &idle);
+  // Never preempts others, and gets a sixtieth of a processor that they use up: jobs wait for
+  // sessions, but not without end.
+  const struct sched_param unused {};
+  sched_setscheduler(0, SCHED_BATCH, &unused);
   setpriority(PRIO_PROCESS, 0, lowest_priority);
   sigset_t none;
   sigemptyset(&none);
