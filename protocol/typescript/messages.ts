@@ -831,6 +831,8 @@ export interface JobCreateParamsEntries {
   output?: string;
   /** Preset of the denoiser; empty: none. */
   preset?: string;
+  /** Ends an image when its expected structural similarity to the converged one is this. */
+  quality?: number;
   /** Path traces these light paths; absent: the hybrid renderer. */
   reference?: "same_paths" | "full";
   /** Samples per pixel; absent: accumulation.max_samples. */
@@ -841,6 +843,8 @@ export interface JobCreateParamsEntries {
   settings?: JsonObject;
   /** Time in the clip of the first frame. [seconds] */
   time?: number;
+  /** Ends an image after so long. [seconds] */
+  time_limit?: number;
   /** Frames of one turn of the camera around the scene. */
   turntable?: number;
   /** Material variant; empty: the file's default. */
