@@ -196,18 +196,18 @@ class RenderSets(unittest.TestCase):
     def test_quality_is_that_of_the_converged_image(self):
         common = {"scene": self.mirror, "width": 96, "reference": "full"}
         code, _, err = self.run_render("--manifest", self.manifest([
-            {**common, "output": "truth.png", "samples": 2048},
-            {**common, "output": "low.png", "quality": 0.8},
-            {**common, "output": "high.png", "quality": 0.95},
+            {**common, "output": "truth.png", "samples": 256},
+            {**common, "output": "low.png", "quality": 0.9},
+            {**common, "output": "high.png", "quality": 0.997},
             {**common, "output": "late.png", "time_limit": 0.01}]), "--report", "report.json")
         self.assertEqual((code, err), (0, ""))
         low, high, late = (entry["samples"] for entry in json.loads(self.bytes_of("report.json"))["entries"][1:])
         self.assertLess(low, high)
-        self.assertLess(high, 2048)
+        self.assertLess(high, 256)
         self.assertLess(late, 64)
         truth = self.luma("truth.png")
-        for name, asked in (("low.png", 0.8), ("high.png", 0.95)):
-            self.assertGreater(similarity(truth, self.luma(name)), asked - 0.02, name)
+        for name, asked in (("low.png", 0.9), ("high.png", 0.997)):
+            self.assertGreater(similarity(truth, self.luma(name)), asked - 0.01, name)
 
     def luma(self, name):
         image = decode_png(self.bytes_of(name))
