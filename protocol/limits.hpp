@@ -36,4 +36,18 @@ inline constexpr std::size_t max_node_name = 256;    // cameras, clips, lights, 
 inline constexpr std::uint32_t max_idle_timeout = 31'536'000;  // seconds
 inline constexpr std::size_t max_scene_name = 512;  // paths in the catalogue; environments as well
 
+/// Frames of a clip or a turntable, and their rate in frames per second.
+inline constexpr std::uint32_t max_rendered_frames = 100000;
+inline constexpr double min_clip_rate = 0.1;
+inline constexpr double max_clip_rate = 1000.0;
+/// Time in a clip, seconds.
+inline constexpr double max_clip_time = 1e6;
+/// Expected structural similarity at which an image is good enough.
+inline constexpr double min_similarity = 0.1;
+inline constexpr double max_similarity = 0.999;
+/// Of an image, seconds.
+inline constexpr double min_time_limit = 0.01;
+inline constexpr double max_time_limit = 86400.0;
+inline constexpr std::size_t max_path = 4096;  // files and templates of their names; bytes
+
 }  // namespace heliograph::protocol

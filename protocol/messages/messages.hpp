@@ -5,8 +5,10 @@
 // each message's `fields()`.
 
 #include "protocol/messages/frame_messages.hpp"
+#include "protocol/messages/job_messages.hpp"
 #include "protocol/messages/loading_messages.hpp"
 #include "protocol/messages/membership_messages.hpp"
+#include "protocol/messages/render_messages.hpp"
 #include "protocol/messages/scene_messages.hpp"
 #include "protocol/messages/session_messages.hpp"
 #include "protocol/messages/stream_messages.hpp"

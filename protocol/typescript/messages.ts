@@ -520,7 +520,7 @@ export interface FrameCaptureParams {
   /** A name from frame.buffers. */
   buffer?: string;
   /** Format of the file: png and jpeg for viewing, npy and exr for values. */
-  format?: "png" | "jpeg" | "npy" | "exr";
+  format?: "png" | "jpeg" | "webp" | "npy" | "exr";
   /**
    * Samples per pixel to wait for, at most accumulation.max_samples, 1 without accumulation;
    * absent: wait for the converged frame.
@@ -535,7 +535,7 @@ export interface Capture {
   /** The file as base64 (RFC 4648). */
   data: string;
   /** Format of the file. */
-  format: "png" | "jpeg" | "npy" | "exr";
+  format: "png" | "jpeg" | "webp" | "npy" | "exr";
   /** Frame height. [pixels] */
   height: number;
   /** Samples accumulated per pixel. */
@@ -802,6 +802,157 @@ export interface Inspection {
   row: number;
   /** Width of the image. [pixels] */
   width: number;
+}
+
+export interface JobCreateParamsEntriesView {
+  /** Position of the camera, world space. [metres] */
+  eye: Vector3;
+  /** The point at the centre of the image. [metres] */
+  target: Vector3;
+  /** The up direction of the image. */
+  up?: Vector3;
+  /** Vertical field of view. [degrees] */
+  vertical_fov?: number;
+}
+
+export interface JobCreateParamsEntries {
+  /** sky, transparent (PNG and WebP), or a colour such as #ffffff. */
+  background?: string;
+  /** Buffer to write. */
+  buffer?: string;
+  /** Camera of the scene by its name or its number from 1 on, or all; empty: the first. */
+  camera?: string;
+  /** Animation clip; empty: the default pose. */
+  clip?: string;
+  /** Image that lights the scene; empty: the one beside the scene. */
+  environment?: string;
+  /** Format; absent: by the extension of the name. */
+  format?: "png" | "jpeg" | "webp" | "npy" | "exr" | "mp4" | "webm" | "animated_webp";
+  /** Frames per second of clips and videos. */
+  fps?: number;
+  /** Frames of the clip; absent: one. */
+  frames?: number;
+  /** Frame height. [pixels] */
+  height?: number;
+  /** Name of the file; {scene}, {camera} and {frame:04} stand for what is in the image. */
+  output?: string;
+  /** Preset of the denoiser; empty: none. */
+  preset?: string;
+  /** Ends an image when its expected structural similarity to the converged one is this. */
+  quality?: number;
+  /** Path traces these light paths; absent: the hybrid renderer. */
+  reference?: "same_paths" | "full";
+  /** Samples per pixel; absent: accumulation.max_samples. */
+  samples?: number;
+  /** The scene: a file, or in a job a name. */
+  scene: string;
+  /** A merge patch of the settings, on top of the preset. */
+  settings?: JsonObject;
+  /** Time in the clip of the first frame. [seconds] */
+  time?: number;
+  /** Ends an image after so long. [seconds] */
+  time_limit?: number;
+  /** Frames of one turn of the camera around the scene. */
+  turntable?: number;
+  /** Material variant; empty: the file's default. */
+  variant?: string;
+  /** Another camera than those of the scene. */
+  view?: JobCreateParamsEntriesView;
+  /** Frame width; one side gives the other at 16:9. [pixels] */
+  width?: number;
+}
+
+/** Parameters of job.create. */
+export interface JobCreateParams {
+  /** What to render: as in a manifest. */
+  entries: JobCreateParamsEntries[];
+  /**
+   * Idempotency key: a second request with it creates nothing and answers with the job of the
+   * first.
+   */
+  key?: string;
+  /** A name for people. */
+  name?: string;
+  /** Jobs of a higher priority begin first; of one priority, the older. */
+  priority?: number;
+  /** Address that is told when the job has ended; its host must be allowed by the server. */
+  webhook?: string;
+}
+
+export interface JobCreateResultFailures {
+  /** Number of the entry, from 1 on; 0: the whole job. */
+  entry: number;
+  /** Why it failed. */
+  reason: string;
+  /** Its scene. */
+  scene: string;
+}
+
+export interface JobCreateResultFiles {
+  /** Its size. [bytes] */
+  bytes: number;
+  /** The file's name in the job. */
+  name: string;
+  /** Its path on this server. */
+  url: string;
+}
+
+/** Result of job.create. */
+export interface JobCreateResult {
+  /** How often it was begun: again after the server was killed. */
+  attempts: number;
+  /** When it was created, since 1970. [seconds] */
+  created: number;
+  /** When it ended. [seconds] */
+  ended: number | null;
+  /** Number of entries. */
+  entries: number;
+  /** When it is forgotten with its files. [seconds] */
+  expires: number | null;
+  /** The entries that failed. */
+  failures: JobCreateResultFailures[];
+  /** The files that are complete; job.list and job.changed leave them out. */
+  files: JobCreateResultFiles[];
+  /** Number of images, as far as that is known. */
+  images: number;
+  /** Images that were rendered. */
+  images_done: number;
+  /** The job's id. */
+  job: string;
+  /** A name for people. */
+  name: string | null;
+  /** Jobs of a higher priority begin first. */
+  priority: number;
+  /** When it was begun. [seconds] */
+  started: number | null;
+  /** queued, running, done, partial (some entries failed), failed or canceled. */
+  state: "queued" | "running" | "done" | "partial" | "failed" | "canceled";
+}
+
+/** Parameters of job.list. */
+export interface JobListParams {
+  /** At most so many, the newest. */
+  limit?: number;
+  /** Only jobs in this state. */
+  state?: "queued" | "running" | "done" | "partial" | "failed" | "canceled";
+}
+
+/** Result of job.list. */
+export interface JobListResult {
+  /** Size of all files. [bytes] */
+  bytes: number;
+  /** The jobs, the newest first. */
+  jobs: JobCreateResult[];
+  /** Number of jobs that wait. */
+  queued: number;
+  /** Size of all files at most. [bytes] */
+  quota: number;
+}
+
+/** Parameters of job.status. */
+export interface JobStatusParams {
+  /** The job's id. */
+  job: string;
 }
 
 /** Parameters of the notification session.closed. */
@@ -1086,6 +1237,14 @@ export interface Methods {
   "scene.pick": { params: ScenePickParams; result: Pick };
   /** Returns the value of every buffer at a point of the image. */
   "frame.inspect": { params: ScenePickParams; result: Inspection };
+  /** Queues images and videos of scenes to render into files, beside the sessions. */
+  "job.create": { params: JobCreateParams; result: JobCreateResult };
+  /** Lists jobs, the newest first, without their files. */
+  "job.list": { params: JobListParams; result: JobListResult };
+  /** Describes a job: its progress, its files and what failed. */
+  "job.status": { params: JobStatusParams; result: JobCreateResult };
+  /** Ends a job. Files that are complete stay; a job that has ended stays as it is. */
+  "job.cancel": { params: JobStatusParams; result: JobCreateResult };
 }
 
 /** Parameters of every notification of the server. */
@@ -1121,6 +1280,11 @@ export interface Notifications {
   "materials.changed": MaterialsChangedNotification;
   /** Another viewer changed the environment. */
   "environment.changed": EnvironmentChangedNotification;
+  /**
+   * A job was created, begun, canceled, ended, or has more images; for every viewer of the server.
+   * Without files.
+   */
+  "job.changed": JobCreateResult;
 }
 
 export const ErrorCode = {

@@ -14,7 +14,7 @@
 namespace heliograph::cli {
 namespace {
 
-constexpr std::array<std::string_view, 2> secrets{"token", "view-token"};
+constexpr std::array<std::string_view, 3> secrets{"token", "view-token", "webhook-secret"};
 constexpr const char* config_variable = "HELIOGRAPH_CONFIG";
 
 std::string variable(const std::string& name) {

@@ -35,5 +35,7 @@ void add_size_options(CLI::App& command, Number& width, Number& height,
 
 /// Adds the command "serve".
 CLI::App* add_serve(CLI::App& app, ServeOptions& options);
+/// Adds the command "render".
+CLI::App* add_render(CLI::App& app, RenderOptions& options);
 
 }  // namespace heliograph::cli

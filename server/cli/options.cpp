@@ -31,18 +31,6 @@ constexpr const char* program_examples = R"text(Examples:
 
 "heliograph COMMAND --help" explains each command.)text";
 
-constexpr const char* render_examples = R"text(Examples:
-  heliograph render helmet.glb -o helmet.png --width 1920 --height 1080
-  heliograph render helmet.glb -o normals.png --buffer gbuffer.normals --samples 1
-  heliograph render helmet.glb -o dark.png --environment studio.hdr --set exposure.compensation=-1
-  heliograph render atrium.glb -o atrium.png --timings --frames 32
-  heliograph render fox.glb -o run.png --clip Run --time 0.2 --frames 24
-  heliograph render *.glb -o "{scene}_{camera}.png" --camera all --width 640
-  heliograph render helmet.glb -o turn_%03d.png --turntable 36
-  heliograph render helmet.glb -o - > helmet.png
-  heliograph render pillars.glb -o svgf.png --preset svgf --set accumulation.blend_samples=4096
-  heliograph render pillars.glb -o reference.png --reference full --samples 1024)text";
-
 constexpr const char* devices_examples = R"text(Example:
   heliograph devices --device llvmpipe)text";
 
@@ -53,70 +41,6 @@ constexpr const char* schema_examples = R"text(Examples:
 constexpr const char* health_examples = R"text(Examples:
   heliograph health                    the server of the same environment and --config
   heliograph health --url http://127.0.0.1:9000)text";
-
-CLI::App* add_render(CLI::App& app, RenderOptions& options) {
-  CLI::App* command =
-      app.add_subcommand("render", "Render an image, or the frames of a clip, into files");
-  command->add_option("scene", options.scenes, "One or more .glb or .gltf files")
-      ->type_name("FILE")
-      ->required();
-  command
-      ->add_option("-o,--output", options.output,
-                   "File to write: .png or .jpg; .exr or .npy for values. {scene}, {camera} and "
-                   "{frame:04} (or %04d) in the name stand for what is in the image; \"-\" is "
-                   "standard output")
-      ->type_name("FILE")
-      ->required();
-  command
-      ->add_option("--format", options.format,
-                   "Format of the files [by their extension; png for -]")
-      ->check(one_of({"png", "jpg", "exr", "npy"}));
-  add_size_options(*command, options.width, options.height, "1280x720; one side gives the other");
-  command
-      ->add_option(
-          "--camera", options.camera,
-          "Camera of the scene by its name or its number from 1 on, or \"all\" [the first; "
-          "without cameras the whole scene is in view]")
-      ->type_name("NAME");
-  auto* const turntable =
-      command
-          ->add_option("--turntable", options.turntable,
-                       "Number of frames of one turn of the camera around the scene")
-          ->check(CLI::Range(1, 100000));
-  command->add_option("--samples", options.samples, "Samples per pixel [accumulation.max_samples]")
-      ->check(CLI::Range(1u, protocol::max_samples_per_pixel));
-  command
-      ->add_option("--reference", options.reference,
-                   "Path trace instead: the hybrid's own light paths (same_paths) or all (full)")
-      ->check(one_of({"same_paths", "full"}));
-  add_settings_options(*command, options.settings);
-  command->add_option("--buffer", options.buffer, "Buffer to write")->capture_default_str();
-  add_environment_option(*command, options.environment);
-  add_limit_options(*command, options.limits);
-  command->add_flag("--timings", options.timings,
-                    "Print one line of JSON: the median time of each pass");
-  auto* const clip = command->add_option("--clip", options.clip,
-                                         "Animation clip that poses the scene [default pose]");
-  clip->type_name("NAME");
-  command->add_option("--time", options.time, "Time in the clip, seconds")
-      ->check(CLI::Range(0.0, 1e6))
-      ->needs(clip)
-      ->capture_default_str();
-  command->add_option("--fps", options.fps, "Frames per second of the clip")
-      ->check(CLI::Range(0.1, 1000.0))
-      ->needs(clip)
-      ->capture_default_str();
-  command
-      ->add_option("--frames", options.frames,
-                   "Number of frames of the clip, in numbered files [1], or of frames to "
-                   "measure for --timings [16]")
-      ->check(CLI::Range(1, 100000))
-      ->excludes(turntable);
-  add_device_options(*command, options.device);
-  add_shader_option(*command, options.device);
-  command->footer(render_examples);
-  return command;
-}
 
 CLI::App* add_devices(CLI::App& app, DevicesOptions& options) {
   CLI::App* command =

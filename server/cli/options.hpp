@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "protocol/messages/render_messages.hpp"
 #include "scene/import.hpp"
 
 namespace heliograph::cli {
@@ -35,6 +36,12 @@ struct ServeOptions {
   std::string uploads;  // folder; empty: uploads are not allowed
   std::uint64_t max_upload_bytes = 256ull << 20;
   std::uint64_t upload_quota = 4ull << 30;
+  std::string jobs;  // folder; empty: there are no jobs
+  std::uint64_t job_quota = 4ull << 30;
+  std::uint64_t max_waiting_jobs = 10000;
+  std::uint32_t keep_jobs = 7 * 86400;  // seconds
+  std::vector<std::string> webhook_hosts;
+  std::string webhook_secret;
   std::string environment;
   std::optional<std::uint32_t> width;  // absent: depends on the device
   std::optional<std::uint32_t> height;
@@ -69,23 +76,17 @@ struct ServeOptions {
 
 struct RenderOptions {
   std::vector<std::filesystem::path> scenes;
-  std::string output;                  // see OutputName
-  std::string format;                  // empty: by the extension of the output
-  std::optional<std::uint32_t> width;  // absent: see frame_size()
-  std::optional<std::uint32_t> height;
-  std::string camera;                      // name or number; empty: the first; "all"
-  std::optional<std::uint32_t> turntable;  // frames of one turn
-  std::optional<std::uint32_t> samples;
-  scene::ImportLimits limits;
-  std::string reference;  // reference.scope; empty: no path tracing
+  std::string manifest;             // file of entries; empty: none
+  protocol::RenderRequest request;  // of every scene; what an entry of the manifest lacks
+  std::string format;               // empty: by the extension of the output
+  std::string reference;            // reference.scope; empty: no path tracing
   SettingsOptions settings;
-  std::string buffer = "output";
-  std::string environment;
+  scene::ImportLimits limits;
+  bool resume = false;  // keeps files that exist
+  std::string shard;    // "I/N": every Nth entry from the Ith on
+  std::string report;   // file to write; empty: none
+  std::string progress = "auto";
   bool timings = false;
-  std::string clip;   // empty: default pose
-  double time = 0.0;  // seconds into the clip
-  double fps = 30.0;  // frames per second of the clip
-  std::optional<std::uint32_t> frames;
   DeviceOptions device;
 };
 

@@ -12,6 +12,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/engine_options.hpp"
+#include "cli/job_options.hpp"
 #include "cli/log.hpp"
 #include "cli/scene_roots.hpp"
 #include "net/server.hpp"
@@ -187,6 +188,8 @@ int run(const ServeOptions& options) {
                protocol::enum_name(engine.tracer()));
   set_mmap_threshold(engine.device());
   if (!options.width && !options.height) set_default_size(hosting.session, engine.device());
+  const std::unique_ptr<jobs::JobQueue> job_queue = make_job_queue(options, hosting);
+  hosting.jobs = job_queue.get();
   session::SessionHost host(engine, hosting);
   if (uploads) serving.router.uploads = uploads->scenes();
   net::Server server(host, serving, uploads.get());

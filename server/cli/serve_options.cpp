@@ -179,6 +179,40 @@ void add_scene_options(CLI::App& command, ServeOptions& options) {
       ->group(group);
 }
 
+void add_job_options(CLI::App& command, ServeOptions& options) {
+  constexpr const char* group = "Jobs";
+  auto* const folder = command.add_option(
+      "--jobs", options.jobs,
+      "Folder for jobs that clients create with POST /api/v1/jobs, and for their files [no jobs]");
+  folder->type_name("FOLDER")->group(group);
+  command.add_option("--job-quota", options.job_quota, "Maximum bytes of the files of all jobs")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option("--max-waiting-jobs", options.max_waiting_jobs, "Maximum number of queued jobs")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str()
+      ->group(group);
+  command
+      .add_option("--keep-jobs", options.keep_jobs,
+                  "Seconds after which a job that has ended is forgotten with its files")
+      ->check(CLI::Range(1, 31'536'000))
+      ->capture_default_str()
+      ->group(group);
+  auto* const secret = command.add_option("--webhook-secret", options.webhook_secret,
+                                          "Key of the signatures of webhooks (HMAC-SHA256)");
+  secret->group(group);
+  command
+      .add_option("--webhook-host", options.webhook_hosts,
+                  "Host that jobs may tell when they have ended [none]")
+      ->type_name("NAME")
+      ->allow_extra_args(false)
+      ->delimiter(',')
+      ->needs(secret)
+      ->group(group);
+}
+
 void add_log_options(CLI::App& command, LogOptions& options) {
   constexpr const char* group = "Log";
   command.add_option("--log-format", options.format, "Format of the log on stderr")
@@ -199,6 +233,7 @@ CLI::App* add_serve(CLI::App& app, ServeOptions& options) {
   add_access_options(*command, options);
   add_capacity_options(*command, options);
   add_scene_options(*command, options);
+  add_job_options(*command, options);
   add_size_options(*command, options.width, options.height, "640x360 on a CPU, else 1280x720");
   add_settings_options(*command, options.settings);
   add_device_options(*command, options.device);

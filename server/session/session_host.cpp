@@ -6,6 +6,7 @@
 #include <string_view>
 #include <utility>
 
+#include "jobs/job_queue.hpp"
 #include "session/commands/commands.hpp"
 
 namespace heliograph::session {
@@ -53,6 +54,7 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
   add_frame_commands(dispatcher_, *this);
   add_edit_commands(dispatcher_, *this);
   add_probe_commands(dispatcher_, *this);
+  add_job_commands(dispatcher_, *this);
   dispatcher_.set_gate([this](const protocol::MethodDescriptor& method,
                               const protocol::CallContext& call) -> protocol::Result<void> {
     const auto session = sessions_.session_of(call);
@@ -68,6 +70,17 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
     spdlog::error("{} failed: {}", method, reason);
   });
   idle_thread_ = std::thread([this] { close_idle_sessions(); });
+  if (options_.jobs) follow_jobs();
+}
+
+/// Tells every viewer of every session; a newer state of a job replaces one that is queued.
+void SessionHost::follow_jobs() {
+  options_.jobs->on_change([this](const protocol::JobInfo& job) {
+    const std::string text = protocol::make_notification<protocol::notifications::job_changed>(job);
+    const std::string key = "job.changed " + job.job;
+    for (const auto& session : sessions_.all()) session->viewers().send_all(text, key);
+  });
+  options_.jobs->start();
 }
 
 void SessionHost::close_idle_sessions() {
@@ -79,6 +92,7 @@ SessionHost::~SessionHost() {
 }
 
 void SessionHost::stop() {
+  if (options_.jobs) options_.jobs->stop();
   stopping_ = true;
   idle_check_.notify();
   if (idle_thread_.joinable()) idle_thread_.join();

@@ -17,6 +17,10 @@
 #include "session/rendering/render_loop.hpp"
 #include "session/session_registry.hpp"
 
+namespace heliograph::jobs {
+class JobQueue;
+}
+
 namespace heliograph::session {
 
 struct HostOptions {
@@ -31,6 +35,8 @@ struct HostOptions {
   std::uint64_t max_upload_bytes = 0;
   /// A session without viewers releases its renderer after so long.
   std::chrono::seconds release_after{120};
+  /// Jobs beside the sessions; null: none. Must outlive the host's use, up to stop().
+  jobs::JobQueue* jobs = nullptr;
 };
 
 /// Everything of the server but its sockets: the sessions, what renders them and loads their
@@ -50,6 +56,8 @@ class SessionHost {
   SessionRegistry& sessions() { return sessions_; }
   const SessionRegistry& sessions() const { return sessions_; }
   EnvironmentLibrary& environments() { return environments_; }
+  /// Null: there are none.
+  jobs::JobQueue* jobs() const { return options_.jobs; }
 
   /// Creates a session. `done` is called once, here or when its scene is loaded; if that fails the
   /// session is closed.
@@ -76,6 +84,7 @@ class SessionHost {
 
  private:
   void close_idle_sessions();
+  void follow_jobs();
   void fail_creation(const std::shared_ptr<Session>& session, const protocol::Error& why,
                      const Created& done);
 

@@ -15,9 +15,10 @@ BELOW = {
     "tracing": {"gpu", "scene", "protocol"},
     "render": {"tracing", "gpu", "scene", "protocol"},
     "stream": {"protocol"},
-    "session": {"render", "stream", "scene", "protocol"},
-    "net": {"session", "stream", "protocol"},
-    "cli": {"net", "session", "render", "stream", "scene", "protocol"},
+    "jobs": {"protocol"},
+    "session": {"render", "stream", "jobs", "scene", "protocol"},
+    "net": {"session", "stream", "jobs", "protocol"},
+    "cli": {"net", "session", "jobs", "render", "stream", "scene", "protocol"},
 }
 # Headers outside the folders above, and who may include them.
 SHARED = {"shaders": {"scene", "tracing", "render"}, "web_client": {"net"}}

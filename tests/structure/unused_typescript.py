@@ -14,6 +14,7 @@ LIBRARY = ROOT / "protocol/typescript"
 # Public interface of the library that the web client does not use. None: the whole file.
 PUBLIC = {
     "client.ts": {"HeliographClient", "ClientOptions"},
+    "local.ts": None,
     "messages.ts": None,
     "settings_schema.ts": {"ToggleControl", "TextControl", "ColorControl", "JsonControl"},
 }

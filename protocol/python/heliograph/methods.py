@@ -158,7 +158,7 @@ class Frame(_Group):
             self,
             *,
             buffer: str = _UNSET,
-            format: Literal["png", "jpeg", "npy", "exr"] = _UNSET,
+            format: Literal["png", "jpeg", "webp", "npy", "exr"] = _UNSET,
             samples: int = _UNSET) -> Dict[str, Any]:
         """Renders one buffer and returns it as an image file.
 
@@ -200,6 +200,67 @@ class Frame(_Group):
         Returns: buffers, column, height, row, width.
         """
         return self._call("frame.inspect", _given({"x": x, "y": y}))
+
+
+class Job(_Group):
+    def create(
+            self,
+            *,
+            entries: List[Dict[str, Any]],
+            key: str = _UNSET,
+            name: str = _UNSET,
+            priority: int = _UNSET,
+            webhook: str = _UNSET) -> Dict[str, Any]:
+        """Queues images and videos of scenes to render into files, beside the sessions.
+
+        entries: What to render: as in a manifest.
+        key: Idempotency key: a second request with it creates nothing and answers with the job
+            of the first.
+        name: A name for people.
+        priority: Jobs of a higher priority begin first; of one priority, the older.
+        webhook: Address that is told when the job has ended; its host must be allowed by the
+            server.
+
+        Returns: attempts, created, ended, entries, expires, failures, files, images,
+            images_done, job, name, priority, started, state.
+        """
+        return self._call("job.create", _given({
+            "entries": entries, "key": key, "name": name, "priority": priority,
+            "webhook": webhook}))
+
+    def list(
+            self,
+            *,
+            limit: int = _UNSET,
+            state: Literal["queued", "running", "done", "partial", "failed", "canceled"] = _UNSET) -> Dict[str, Any]:
+        """Lists jobs, the newest first, without their files.
+
+        limit: At most so many, the newest.
+        state: Only jobs in this state.
+
+        Returns: bytes, jobs, queued, quota.
+        """
+        return self._call("job.list", _given({"limit": limit, "state": state}))
+
+    def status(self, *, job: str) -> Dict[str, Any]:
+        """Describes a job: its progress, its files and what failed.
+
+        job: The job's id.
+
+        Returns: attempts, created, ended, entries, expires, failures, files, images,
+            images_done, job, name, priority, started, state.
+        """
+        return self._call("job.status", _given({"job": job}))
+
+    def cancel(self, *, job: str) -> Dict[str, Any]:
+        """Ends a job. Files that are complete stay; a job that has ended stays as it is.
+
+        job: The job's id.
+
+        Returns: attempts, created, ended, entries, expires, failures, files, images,
+            images_done, job, name, priority, started, state.
+        """
+        return self._call("job.cancel", _given({"job": job}))
 
 
 class Lights(_Group):
@@ -534,6 +595,7 @@ class Methods:
         self.camera = Camera(call)
         self.environment = Environment(call)
         self.frame = Frame(call)
+        self.job = Job(call)
         self.lights = Lights(call)
         self.materials = Materials(call)
         self.reference = Reference(call)

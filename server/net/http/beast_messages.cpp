@@ -1,6 +1,9 @@
 #include "net/http/beast_messages.hpp"
 
 #include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 namespace heliograph::net {
@@ -16,6 +19,18 @@ std::string to_string(const View& view) {
 /// Responses with these statuses have no body and no length, RFC 9110 section 8.6.
 bool is_bare(int status) {
   return status == 204 || status == 304;
+}
+
+template <class Message>
+void set_head(Message& message, ServerContext& context, const HttpResponse& answer,
+              const Framing& framing) {
+  ++context.traffic.responses[answer.status];
+  message.version(11);
+  message.result(static_cast<unsigned>(answer.status));
+  set_usual_headers(message, context, framing.cors);
+  if (!answer.content_type.empty()) message.set(http::field::content_type, answer.content_type);
+  for (const auto& [name, value] : answer.headers) message.set(name, value);
+  message.keep_alive(framing.keep_alive);
 }
 
 }  // namespace
@@ -48,17 +63,24 @@ void set_usual_headers(http::fields& message, const ServerContext& context, cons
 }
 
 BeastResponse to_message(ServerContext& context, HttpResponse answer, const Framing& framing) {
-  ++context.traffic.responses[answer.status];
   BeastResponse message;
-  message.version(11);
-  message.result(static_cast<unsigned>(answer.status));
-  set_usual_headers(message, context, framing.cors);
-  if (!answer.content_type.empty()) message.set(http::field::content_type, answer.content_type);
-  for (const auto& [name, value] : answer.headers) message.set(name, value);
-  message.keep_alive(framing.keep_alive);
+  set_head(message, context, answer, framing);
   if (is_bare(answer.status)) return message;
-  message.content_length(answer.body.size());
+  std::error_code gone;
+  const std::uintmax_t file_bytes = std::filesystem::file_size(answer.file, gone);
+  message.content_length(answer.file.empty() || gone ? answer.body.size() : file_bytes);
   if (!framing.head_only) message.body() = std::move(answer.body);
+  return message;
+}
+
+std::optional<BeastFile> to_file_message(ServerContext& context, const HttpResponse& answer,
+                                         const Framing& framing) {
+  BeastFile message;
+  boost::system::error_code error;
+  message.body().open(answer.file.c_str(), beast::file_mode::scan, error);
+  if (error) return std::nullopt;
+  set_head(message, context, answer, framing);
+  message.content_length(message.body().size());
   return message;
 }
 

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <boost/beast/http/file_body.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
+#include <optional>
 
 #include "net/connection.hpp"
 #include "net/http/http_message.hpp"
@@ -13,6 +15,7 @@ namespace heliograph::net {
 
 using BeastRequest = beast::http::request<beast::http::string_body>;
 using BeastResponse = beast::http::response<beast::http::string_body>;
+using BeastFile = beast::http::response<beast::http::file_body>;
 
 HttpRequest to_request(BeastRequest&& message, const ClientStream& stream);
 
@@ -30,5 +33,8 @@ void set_usual_headers(beast::http::fields& message, const ServerContext& contex
 
 /// The response as it is written, with the headers of every response. Counts it.
 BeastResponse to_message(ServerContext& context, HttpResponse answer, const Framing& framing);
+/// The same of a response with a file; nothing if it cannot be opened.
+std::optional<BeastFile> to_file_message(ServerContext& context, const HttpResponse& answer,
+                                         const Framing& framing);
 
 }  // namespace heliograph::net

@@ -1,6 +1,8 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
+#include <cstdint>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -8,6 +10,7 @@
 
 #include "net/connection.hpp"
 #include "net/http/beast_messages.hpp"
+#include "net/http/job_routes.hpp"
 #include "net/http/request_head.hpp"
 #include "net/security/rate_limit.hpp"
 #include "net/tcp_progress.hpp"
@@ -20,6 +23,10 @@ namespace {
 
 namespace http = beast::http;
 using boost::system::error_code;
+
+std::string_view beast_view(beast::string_view text) {
+  return {text.data(), text.size()};
+}
 
 /// "/api/v1/sessions/main/stream.mjpg" -> main
 std::optional<std::string> mjpeg_stream_session(const HttpRequest& request) {
@@ -93,7 +100,8 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     headers_before_body_.reset();
     parser_.emplace();
     parser_->header_limit(max_request_head_bytes);
-    parser_->body_limit(context_.uploads ? context_.uploads->max_bytes() : largest_body());
+    // The head decides what the body may have.
+    parser_->body_limit(std::numeric_limits<std::uint64_t>::max());
     // The first request has a short timeout, later ones of a kept-alive connection a longer one.
     stream_.next_layer().expires_after(std::exchange(first_, false) ? handshake_timeout
                                                                     : idle_timeout);
@@ -135,17 +143,26 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 
   std::size_t largest_body() const { return context_.host.dispatch_limits().max_message_bytes; }
 
+  /// Manifests of jobs may be large, from clients that may create jobs.
+  std::size_t largest_body_of_request() const {
+    const auto& head = parser_->get();
+    const bool job = head.method() == http::verb::post && beast_view(head.target()) == jobs_path;
+    if (!job || !context_.host.jobs()) return largest_body();
+    const Admission admission = context_.access.admit(to_request(BeastRequest(head), stream_));
+    const bool may_create = !admission.refusal && admission.role == Role::control;
+    return may_create ? max_job_bytes : largest_body();
+  }
+
   void received_header(error_code error) {
     framing_.head_only = parser_->get().method() == http::verb::head;
     if (error) return received(error);
+    const std::size_t largest = largest_body_of_request();
     if (context_.uploads && listener_kind_ == ListenerKind::main &&
         parser_->get().method() == http::verb::put) {
       return begin_upload();
     }
-    if (parser_->content_length().value_or(0) > largest_body()) {
-      return received(http::error::body_limit);
-    }
-    parser_->body_limit(largest_body());
+    if (parser_->content_length().value_or(0) > largest) return received(http::error::body_limit);
+    parser_->body_limit(largest);
     // The parser adds trailers to the headers; they are not for that, RFC 9110 section 6.5.1.
     if (parser_->chunked()) headers_before_body_ = parser_->get().base();
     send_continue(parser_->get(), [self = shared_from_this()] {
@@ -331,6 +348,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   }
 
   void send(HttpResponse answer) {
+    if (!answer.file.empty() && !framing_.head_only) return send_file(answer);
     if (!outgoing_.has_room(answer.body.size())) {
       answer = retry_later("Too many responses wait to be read by other clients.");
     }
@@ -343,10 +361,22 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
                 [self = shared_from_this()](error_code error) { self->sent(error); });
   }
 
+  void send_file(const HttpResponse& answer) {
+    file_ = to_file_message(context_, answer, framing_);
+    if (!file_) return send(text_response(404, "The file is gone."));
+    file_serializer_.emplace(*file_);
+    const PaceKeeper keeper({.timeout = idle_timeout, .bytes_per_second = min_bytes_per_second},
+                            PaceKeeper::Clock::now());
+    write_paced(stream_, *file_serializer_, keeper,
+                [self = shared_from_this()](error_code error) { self->sent(error); });
+  }
+
   void sent(error_code error) {
     answering_ = false;
     serializer_.reset();
     response_ = {};
+    file_serializer_.reset();
+    file_.reset();
     outgoing_.hold(0);
     if (error) return;
     if (!framing_.keep_alive || shutting_down_) return close();
@@ -389,6 +419,8 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   OutgoingBytes outgoing_{context_.outgoing_bytes};
   BeastResponse response_;
   std::optional<http::response_serializer<http::string_body>> serializer_;
+  std::optional<BeastFile> file_;
+  std::optional<http::response_serializer<http::file_body>> file_serializer_;
   RateLimit calls_;
   bool first_ = true;
   bool answering_ = false;

@@ -16,6 +16,7 @@ using protocol::Result;
 constexpr std::array image_kinds{
     ImageKind{"png", protocol::ImageFormat::png, "image/png"},
     ImageKind{"jpg", protocol::ImageFormat::jpeg, "image/jpeg"},
+    ImageKind{"webp", protocol::ImageFormat::webp, "image/webp"},
     ImageKind{"npy", protocol::ImageFormat::npy, "application/x-npy"},
     ImageKind{"exr", protocol::ImageFormat::exr, "image/x-exr"},
 };

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "net/http/image_request.hpp"
+#include "net/http/job_routes.hpp"
 #include "net/http/token_page.hpp"
 #include "protocol/settings/settings_json.hpp"
 #include "web_client/embedded_assets.hpp"
@@ -106,6 +107,8 @@ HttpResponse error_response(const protocol::Error& error) {
       return text_response(404, error.message);
     case ErrorCode::invalid_params:
       return text_response(400, error.message);
+    case ErrorCode::conflict:
+      return text_response(409, error.message);
     case ErrorCode::too_large:
       return text_response(413, error.message);
     case ErrorCode::full:
@@ -176,6 +179,9 @@ void Router::handle(const HttpRequest& request, const Pending& pending, Reply re
   if (request.path == "/rpc") {
     if (request.method != "POST") return reply(method_not_allowed("POST"));
     return call(request, admission.role, pending, std::move(reply));
+  }
+  if (is_job_path(request.path)) {
+    return reply(answer_job(request, host_.jobs(), admission.role));
   }
   if (!options_.uploads.empty() && !uploaded_name(request.path).empty()) {
     return reply(method_not_allowed("PUT"));
@@ -252,7 +258,8 @@ void Router::image(const HttpRequest& request, const ImageAddress& address, Role
   if (!found) return reply(error_response(found.error()));
   const ImageKind* const kind = image_kind(address.extension);
   if (!kind) {
-    return reply(text_response(404, "Images are frame.jpg, frame.png, frame.exr and frame.npy."));
+    return reply(text_response(
+        404, "Images are frame.jpg, frame.png, frame.webp, frame.exr and frame.npy."));
   }
   auto asked = read_image_request(request, (*found)->limits());
   if (!asked) return reply(error_response(asked.error()));

@@ -19,6 +19,7 @@ void add_capture_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_frame_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_edit_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_probe_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
+void add_job_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 
 /// Adds a command that answers at once: `command(session, request, viewer)` gives a
 /// Result<Response>. The session is the one that the call is for.

@@ -10,6 +10,7 @@
 #include "stream/encoders/jpeg_encoder.hpp"
 #include "stream/encoders/npy_encoder.hpp"
 #include "stream/encoders/png_encoder.hpp"
+#include "stream/encoders/webp_encoder.hpp"
 
 namespace heliograph::session {
 
@@ -21,7 +22,7 @@ namespace {
 
 constexpr std::string_view output_buffer = "output";
 constexpr std::string_view radiance_buffer = "output.radiance";
-constexpr int jpeg_quality = 90;
+constexpr int lossy_quality = 90;
 
 using Texel = const float*;
 
@@ -126,11 +127,13 @@ std::vector<std::uint8_t> npy(const render::FloatImage& image) {
   return stream::encode_npy(stream::NpyElement::float32, shape, std::as_bytes(std::span(values)));
 }
 
-std::vector<std::uint8_t> image_file(const render::Frame& frame, ImageFormat format) {
+std::vector<std::uint8_t> image_file(const render::Frame& frame, ImageFormat format,
+                                     stream::Alpha alpha) {
   const stream::ImageView view{.width = frame.width, .height = frame.height, .rgba = frame.rgba};
   if (format == ImageFormat::npy) return npy(frame);
-  if (format == ImageFormat::png) return stream::encode_png(view);
-  return stream::JpegEncoder().encode(view, jpeg_quality, stream::ChromaSampling::full);
+  if (format == ImageFormat::png) return stream::encode_png(view, alpha);
+  if (format == ImageFormat::webp) return stream::encode_webp(view, lossy_quality, alpha);
+  return stream::JpegEncoder().encode(view, lossy_quality, stream::ChromaSampling::full);
 }
 
 }  // namespace
@@ -150,6 +153,7 @@ std::size_t estimated_file_bytes(std::string_view buffer, ImageFormat format, st
     case ImageFormat::png:
       return 3 * pixels;
     case ImageFormat::jpeg:
+    case ImageFormat::webp:
       return pixels;
     case ImageFormat::npy:
       return (output ? 3 : values) * pixels;
@@ -162,6 +166,7 @@ std::size_t estimated_file_bytes(std::string_view buffer, ImageFormat format, st
 Result<CaptureContent> read_content(render::Renderer& renderer, std::string_view buffer,
                                     ImageFormat format) {
   const bool as_image = format == ImageFormat::png || format == ImageFormat::jpeg ||
+                        format == ImageFormat::webp ||
                         (format == ImageFormat::npy && buffer == output_buffer);
   if (as_image) {
     auto frame = renderer.capture_view(buffer);
@@ -179,9 +184,10 @@ Result<CaptureContent> read_content(render::Renderer& renderer, std::string_view
   return CaptureContent{width, height, *std::move(channels)};
 }
 
-std::vector<std::uint8_t> encode_content(const CaptureContent& content, ImageFormat format) {
+std::vector<std::uint8_t> encode_content(const CaptureContent& content, ImageFormat format,
+                                         stream::Alpha alpha) {
   if (const auto* frame = std::get_if<render::Frame>(&content.values)) {
-    return image_file(*frame, format);
+    return image_file(*frame, format, alpha);
   }
   if (const auto* image = std::get_if<render::FloatImage>(&content.values)) {
     if (format == ImageFormat::npy) return npy(*image);

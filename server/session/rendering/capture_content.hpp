@@ -10,12 +10,13 @@
 #include "protocol/result.hpp"
 #include "render/api/renderer.hpp"
 #include "stream/encoders/exr_encoder.hpp"
+#include "stream/encoders/image_view.hpp"
 
 namespace heliograph::session {
 
 /// What a file holds, read from a renderer; encoding it does not need the renderer.
 ///
-/// png and jpeg: the debug view of the buffer. npy: its values: `output` as uint8 of shape
+/// png, jpeg and webp: the debug view of the buffer. npy: its values: `output` as uint8 of shape
 /// (height, width, 3), sRGB; every other buffer as float32, or uint32 for integers, of shape
 /// (height, width), or (height, width, channels) for more than one channel. exr: the values as
 /// channels R, G, B, A, or Y for one channel; for `output` the radiance before exposure and tone
@@ -38,8 +39,9 @@ std::size_t estimated_file_bytes(std::string_view buffer, protocol::ImageFormat 
 protocol::Result<CaptureContent> read_content(render::Renderer& renderer, std::string_view buffer,
                                               protocol::ImageFormat format);
 
-/// @throws std::runtime_error when it cannot be encoded
+/// Alpha is kept in png and webp only. @throws std::runtime_error when it cannot be encoded
 std::vector<std::uint8_t> encode_content(const CaptureContent& content,
-                                         protocol::ImageFormat format);
+                                         protocol::ImageFormat format,
+                                         stream::Alpha alpha = stream::Alpha::ignored);
 
 }  // namespace heliograph::session

@@ -111,7 +111,7 @@ std::optional<File> combine_transparent(const File& colors, const File& over_whi
     rgba[4 * i + 3] = alpha;
   }
   return stream::encode_png({.width = size->first, .height = size->second, .rgba = rgba},
-                            stream::PngAlpha::kept);
+                            stream::Alpha::kept);
 }
 
 /// One capture after another, each of the state that was set before it.

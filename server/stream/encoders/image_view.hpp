@@ -6,8 +6,11 @@
 
 namespace heliograph::stream {
 
-/// Pixels to encode, not owned: sRGB, RGBA of 4 bytes, tightly packed, row 0 on top. Alpha is
-/// ignored.
+/// What becomes of an image's alpha: most formats are opaque.
+enum class Alpha { ignored, kept };
+
+/// Pixels to encode, not owned: sRGB, RGBA of 4 bytes, tightly packed, row 0 on top. Alpha is not
+/// premultiplied, and ignored where an encoder does not ask for it.
 struct ImageView {
   std::uint32_t width = 0;
   std::uint32_t height = 0;

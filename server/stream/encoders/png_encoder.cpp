@@ -26,22 +26,22 @@ std::vector<std::uint8_t> without_alpha(const ImageView& image) {
 
 }  // namespace
 
-std::vector<std::uint8_t> encode_png(const ImageView& image, PngAlpha alpha) {
+std::vector<std::uint8_t> encode_png(const ImageView& image, Alpha alpha) {
   if (!image.complete()) throw std::runtime_error("PNG: the image is incomplete");
-  const bool kept = alpha == PngAlpha::kept;
-  const std::vector<std::uint8_t> rgb = kept ? std::vector<std::uint8_t>() : without_alpha(image);
-  const void* const pixels = kept ? static_cast<const void*>(image.rgba.data()) : rgb.data();
+  std::vector<std::uint8_t> rgb;
+  if (alpha == Alpha::ignored) rgb = without_alpha(image);
 
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = image.width;
   png.height = image.height;
-  png.format = kept ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
+  png.format = alpha == Alpha::kept ? PNG_FORMAT_RGBA : PNG_FORMAT_RGB;
   png.flags = PNG_IMAGE_FLAG_FAST;
   const std::unique_ptr<png_image, PngFree> cleanup(&png);
 
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(png);
   std::vector<std::uint8_t> file(size);
+  const std::uint8_t* const pixels = alpha == Alpha::kept ? image.rgba.data() : rgb.data();
   if (!png_image_write_to_memory(&png, file.data(), &size, 0, pixels, 0, nullptr)) {
     throw std::runtime_error(std::string("PNG: ") + png.message);
   }

@@ -7,10 +7,8 @@
 
 namespace heliograph::stream {
 
-enum class PngAlpha { dropped, kept };
-
-/// The image as a PNG file of 8 bits a channel, RGB or with `kept` RGBA.
+/// The image as a PNG file, 8 bit RGB, or RGBA where alpha is kept.
 /// @throws std::runtime_error if the image is incomplete
-std::vector<std::uint8_t> encode_png(const ImageView& image, PngAlpha alpha = PngAlpha::dropped);
+std::vector<std::uint8_t> encode_png(const ImageView& image, Alpha alpha = Alpha::ignored);
 
 }  // namespace heliograph::stream

@@ -11,7 +11,7 @@ from .commands import OutOfReach, run
 from .files import DEPLOY, ROOT, documents, text_of
 
 FOLDER = os.path.join(DEPLOY, "kubernetes")
-COMPONENTS = ("gpu", "ingress")
+COMPONENTS = ("gpu", "ingress", "render")
 
 
 def kustomization(folder=""):

@@ -66,12 +66,14 @@ class Examples(ServerTestCase):
         model.save(os.path.join(cls.folder.name, "atrium.glb"))
         shutil.copy(os.path.join(given, "mirror.glb"), cls.folder.name)
         shutil.copy(os.path.join(given, "sky.hdr"), cls.folder.name)
-        cls.server = Server("--scene", "mirror", scenes=cls.folder.name)
+        cls.jobs = tempfile.TemporaryDirectory()
+        cls.server = Server("--scene", "mirror", "--jobs", cls.jobs.name, scenes=cls.folder.name)
 
     @classmethod
     def tearDownClass(cls):
         super().tearDownClass()
         cls.folder.cleanup()
+        cls.jobs.cleanup()
 
     def in_order(self):
         methods = {one["name"]: one for one in self.server.call("rpc.discover")["methods"]}
@@ -82,11 +84,13 @@ class Examples(ServerTestCase):
         return [methods[name] for name in order]
 
     async def test_all(self):
-        done = []
+        done, job = [], None
         async with Viewer(self.server) as viewer:
             for method in self.in_order():
                 example = method["examples"][0]
                 params = {param["name"]: param["value"] for param in example["params"]}
+                if "job" in params:
+                    params["job"] = job  # the server chose its id
                 try:
                     answer = await viewer.ask(method["name"], params)
                 except asyncio.TimeoutError:
@@ -96,6 +100,8 @@ class Examples(ServerTestCase):
                                       method["name"]))
                 self.assertEqual(wrong, [])
                 done.append(method["name"])
+                if method["name"] == "job.create":
+                    job = answer["result"]["job"]
         self.assertGreater(len(done), 40)
 
     def test_the_checker_detects_mismatches(self):

@@ -1,4 +1,4 @@
-#include "cli/output_name.hpp"
+#include "cli/render/output_name.hpp"
 
 #include <gtest/gtest.h>
 
@@ -46,11 +46,16 @@ TEST(OutputName, NamesOfAFileStayInItsFolder) {
   EXPECT_EQ(output.file({.scene = "..", .camera = "../../etc\n"}).string(),
             "out/.._.._.._etc_.png");
   EXPECT_EQ(output.folder(), "out/");
+  const OutputName folders("out/{scene}/{camera}/{frame:04}.png");
+  EXPECT_EQ(folders.file({.scene = "fox", .camera = ".."}).string(), "out/fox/_/0000.png");
+  EXPECT_EQ(folders.folder(), "out/");
+  EXPECT_EQ(folders.extension(), ".png");
+  EXPECT_EQ(OutputName("{scene}.d/{camera}").extension(), "");
 }
 
 TEST(OutputName, WhatIsNoNameIsRefused) {
   for (const char* const text : {"{scen}.png", "{frame:}.png", "{frame:x}.png", "{frame:99}.png",
-                                 "{scene.png", "a/", ".", "{scene}/x.png", "%0999d.png", ""}) {
+                                 "{scene.png", "a/", ".", "{scene}/", "%0999d.png", ""}) {
     EXPECT_THROW(OutputName{text}, std::invalid_argument) << text;
   }
 }

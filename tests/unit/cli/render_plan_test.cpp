@@ -1,4 +1,4 @@
-#include "cli/render_plan.hpp"
+#include "cli/render/render_plan.hpp"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ scene::Scene box() {
   return scene;
 }
 
-std::string failure(const RenderOptions& options, const scene::Scene& scene = box()) {
+std::string failure(const protocol::RenderRequest& options, const scene::Scene& scene = box()) {
   try {
     plan_shots(scene, options);
   } catch (const std::runtime_error& error) {
@@ -38,7 +38,7 @@ std::string failure(const RenderOptions& options, const scene::Scene& scene = bo
 
 TEST(FrameSize, OneSideGivesTheOther) {
   const auto size = [](std::optional<std::uint32_t> width, std::optional<std::uint32_t> height) {
-    RenderOptions options;
+    protocol::RenderRequest options;
     options.width = width;
     options.height = height;
     const FrameSize result = frame_size(options);
@@ -53,7 +53,7 @@ TEST(FrameSize, OneSideGivesTheOther) {
 }
 
 TEST(Shots, CamerasAreChosenByNameNumberOrAllOfThem) {
-  RenderOptions options;
+  protocol::RenderRequest options;
   EXPECT_EQ(plan_shots(box(), options).at(0).camera.name, "front");
   options.camera = "side";
   EXPECT_EQ(plan_shots(box(), options).at(0).camera.name, "side");
@@ -75,7 +75,7 @@ TEST(Shots, CamerasAreChosenByNameNumberOrAllOfThem) {
 TEST(Shots, ASceneWithoutCamerasIsShownAsAWhole) {
   scene::Scene scene = box();
   scene.cameras.clear();
-  RenderOptions options;
+  protocol::RenderRequest options;
   options.camera = "all";
   EXPECT_EQ(plan_shots(scene, options).size(), 1u);
   options.camera = "1";
@@ -83,7 +83,7 @@ TEST(Shots, ASceneWithoutCamerasIsShownAsAWhole) {
 }
 
 TEST(Shots, FramesOfAClipFollowEachOther) {
-  RenderOptions options;
+  protocol::RenderRequest options;
   options.clip = "wave";
   options.time = 0.5;
   options.fps = 10.0;
@@ -97,7 +97,7 @@ TEST(Shots, FramesOfAClipFollowEachOther) {
 }
 
 TEST(Shots, TimesBeyondTheClipAreTold) {
-  RenderOptions options;
+  protocol::RenderRequest options;
   options.clip = "wave";
   options.time = 2.0;
   EXPECT_EQ(failure(options), "");
@@ -111,7 +111,7 @@ TEST(Shots, TimesBeyondTheClipAreTold) {
 }
 
 TEST(Shots, ATurntableKeepsItsDistanceFromTheMiddleOfTheScene) {
-  RenderOptions options;
+  protocol::RenderRequest options;
   options.turntable = 4;
   const auto shots = plan_shots(box(), options);
   ASSERT_EQ(shots.size(), 4u);

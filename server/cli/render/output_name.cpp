@@ -1,4 +1,4 @@
-#include "cli/output_name.hpp"
+#include "cli/render/output_name.hpp"
 
 #include <algorithm>
 #include <array>
@@ -33,6 +33,15 @@ std::string path_element(std::string name) {
   return name;
 }
 
+/// Folders named by what is in the image do not lead out of theirs.
+std::filesystem::path contained(const std::string& name) {
+  std::filesystem::path path;
+  for (const std::filesystem::path& element : std::filesystem::path(name)) {
+    path /= element == ".." ? std::filesystem::path("_") : element;
+  }
+  return path;
+}
+
 std::string padded(std::uint32_t number, std::size_t digits) {
   std::string text = std::to_string(number);
   text.insert(0, digits - std::min(text.size(), digits), '0');
@@ -43,17 +52,15 @@ std::string padded(std::uint32_t number, std::size_t digits) {
 
 OutputName::OutputName(const std::string& text) {
   if (text == "-") return;
-  const std::size_t slash = text.rfind('/');
+  const std::size_t placeholder = std::min(text.find('{'), text.size());
+  const std::size_t slash = text.rfind('/', placeholder);
   const std::size_t begin = slash == std::string::npos ? 0 : slash + 1;
   folder_ = begin == 0 ? "." : text.substr(0, begin);
   std::string_view name = std::string_view(text).substr(begin);
   std::error_code ignored;
-  if (name.empty() || std::filesystem::is_directory(text, ignored)) {
+  if (name.empty() || name.back() == '/' || std::filesystem::is_directory(text, ignored)) {
     throw std::invalid_argument("--output: " + text +
                                 " is a folder; name the files in it, such as {scene}.png");
-  }
-  if (folder_.string().find('{') != std::string::npos) {
-    throw std::invalid_argument("--output: placeholders may stand in the file's name only");
   }
   while (!name.empty()) {
     const std::string_view pair = name.substr(0, 2);
@@ -125,7 +132,10 @@ std::string OutputName::extension() const {
   if (parts_.empty() || parts_.back().kind != Kind::text) return {};
   const std::string& last = parts_.back().text;
   const std::size_t dot = last.rfind('.');
-  const bool hidden = dot == 0 && parts_.size() == 1;  // ".png" is a name
+  if (dot != std::string::npos && last.find('/', dot) != std::string::npos) return {};
+  // ".png" is a name
+  const bool hidden =
+      dot == 0 ? parts_.size() == 1 : dot != std::string::npos && last[dot - 1] == '/';
   return dot == std::string::npos || hidden ? std::string() : last.substr(dot);
 }
 
@@ -147,7 +157,8 @@ std::filesystem::path OutputName::file(const ImageOf& image) const {
         break;
     }
   }
-  return folder_ == "." ? std::filesystem::path(name) : folder_ / name;
+  const std::filesystem::path path = contained(name);
+  return folder_ == "." ? path : folder_ / path;
 }
 
 }  // namespace heliograph::cli

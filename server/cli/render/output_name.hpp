@@ -17,7 +17,7 @@ struct ImageOf {
 
 /// The name of one or several output files, with placeholders: {scene}, {camera}, {frame} and
 /// {frame:04}, or printf's %d and %04d for the frame. {{ and }} stand for braces, %% for a percent
-/// sign. "-" is standard output.
+/// sign. Folders in the name may have placeholders, too. "-" is standard output.
 class OutputName {
  public:
   /// @throws std::invalid_argument
@@ -30,7 +30,7 @@ class OutputName {
   /// "run.png" -> "run_{frame:04}.png"
   void add_frame();
 
-  /// The folder of the files.
+  /// The folder of the files, up to the first placeholder: it must exist.
   const std::filesystem::path& folder() const { return folder_; }
   /// ".png"; empty without one.
   std::string extension() const;

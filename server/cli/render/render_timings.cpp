@@ -1,4 +1,4 @@
-#include "cli/render_timings.hpp"
+#include "cli/render/render_timings.hpp"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,0 +1,143 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "protocol/json/fields.hpp"
+#include "protocol/json/raw_json.hpp"
+#include "protocol/limits.hpp"
+#include "protocol/messages/kinds.hpp"
+#include "protocol/settings/settings.hpp"
+
+// What images and videos to render of a scene: an entry of a manifest and of a job.
+
+namespace heliograph::protocol {
+
+/// A camera that is none of the scene's.
+struct RenderView {
+  static constexpr bool strict = true;
+
+  std::array<float, 3> eye{};
+  std::array<float, 3> target{};
+  std::array<float, 3> up{0.0f, 1.0f, 0.0f};
+  float vertical_fov = 45.0f;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("eye", &RenderView::eye, "Position of the camera, world space.")
+            .range(-max_coordinate, max_coordinate)
+            .unit("metres"),
+        field("target", &RenderView::target, "The point at the centre of the image.")
+            .range(-max_coordinate, max_coordinate)
+            .unit("metres"),
+        field("up", &RenderView::up, "The up direction of the image.")
+            .range(-max_coordinate, max_coordinate)
+            .or_default(),
+        field("vertical_fov", &RenderView::vertical_fov, "Vertical field of view.")
+            .range(min_field_of_view, max_field_of_view)
+            .unit("degrees")
+            .or_default(),
+    };
+  }
+  bool operator==(const RenderView&) const = default;
+};
+
+struct RenderRequest {
+  static constexpr bool strict = true;
+
+  std::string scene;
+  std::string output;
+  std::optional<FileFormat> format;
+  std::optional<std::uint32_t> width;
+  std::optional<std::uint32_t> height;
+  std::string camera;
+  std::optional<RenderView> view;
+  std::optional<std::uint32_t> turntable;
+  std::string clip;
+  double time = 0.0;
+  double fps = 30.0;
+  std::optional<std::uint32_t> frames;
+  std::optional<std::uint32_t> samples;
+  std::optional<double> quality;
+  std::optional<double> time_limit;
+  std::optional<ReferenceScope> reference;
+  std::string preset;
+  std::optional<RawJson> settings;
+  std::string buffer = "output";
+  std::string variant;
+  std::string environment;
+  std::string background = "sky";
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("scene", &RenderRequest::scene, "The scene: a file, or in a job a name.")
+            .length(1, max_path),
+        field("output", &RenderRequest::output,
+              "Name of the file; {scene}, {camera} and {frame:04} stand for what is in the image.")
+            .length(0, max_path)
+            .or_default(),
+        field("format", &RenderRequest::format, "Format; absent: by the extension of the name."),
+        field("width", &RenderRequest::width, "Frame width; one side gives the other at 16:9.")
+            .range(min_frame_size, max_frame_size)
+            .unit("pixels"),
+        field("height", &RenderRequest::height, "Frame height.")
+            .range(min_frame_size, max_frame_size)
+            .unit("pixels"),
+        field("camera", &RenderRequest::camera,
+              "Camera of the scene by its name or its number from 1 on, or all; empty: the first.")
+            .length(0, max_node_name)
+            .or_default(),
+        field("view", &RenderRequest::view, "Another camera than those of the scene."),
+        field("turntable", &RenderRequest::turntable,
+              "Frames of one turn of the camera around the scene.")
+            .range(1, max_rendered_frames),
+        field("clip", &RenderRequest::clip, "Animation clip; empty: the default pose.")
+            .length(0, max_node_name)
+            .or_default(),
+        field("time", &RenderRequest::time, "Time in the clip of the first frame.")
+            .range(0, max_clip_time)
+            .unit("seconds")
+            .or_default(),
+        field("fps", &RenderRequest::fps, "Frames per second of clips and videos.")
+            .range(min_clip_rate, max_clip_rate)
+            .or_default(),
+        field("frames", &RenderRequest::frames, "Frames of the clip; absent: one.")
+            .range(1, max_rendered_frames),
+        field("samples", &RenderRequest::samples,
+              "Samples per pixel; absent: accumulation.max_samples.")
+            .range(1, max_samples_per_pixel),
+        field("quality", &RenderRequest::quality,
+              "Ends an image when its expected structural similarity to the converged one is this.")
+            .range(min_similarity, max_similarity),
+        field("time_limit", &RenderRequest::time_limit, "Ends an image after so long.")
+            .range(min_time_limit, max_time_limit)
+            .unit("seconds"),
+        field("reference", &RenderRequest::reference,
+              "Path traces these light paths; absent: the hybrid renderer."),
+        field("preset", &RenderRequest::preset, "Preset of the denoiser; empty: none.")
+            .length(0, max_session_name)
+            .or_default(),
+        field("settings", &RenderRequest::settings,
+              "A merge patch of the settings, on top of the preset."),
+        field("buffer", &RenderRequest::buffer, "Buffer to write.")
+            .length(1, max_session_name)
+            .or_default(),
+        field("variant", &RenderRequest::variant, "Material variant; empty: the file's default.")
+            .length(0, max_node_name)
+            .or_default(),
+        field("environment", &RenderRequest::environment,
+              "Image that lights the scene; empty: the one beside the scene.")
+            .length(0, max_path)
+            .or_default(),
+        field("background", &RenderRequest::background,
+              "sky, transparent (PNG and WebP), or a colour such as #ffffff.")
+            .length(1, max_session_name)
+            .or_default(),
+    };
+  }
+  bool operator==(const RenderRequest&) const = default;
+};
+
+}  // namespace heliograph::protocol

@@ -1,0 +1,149 @@
+#include "cli/render/render_plan.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <numbers>
+#include <stdexcept>
+#include <string_view>
+
+#include "protocol/json/json_values.hpp"
+#include "protocol/json/suggestions.hpp"
+#include "protocol/limits.hpp"
+#include "scene/animation/pose.hpp"
+#include "scene/camera.hpp"
+#include "scene/camera_choice.hpp"
+
+namespace heliograph::cli {
+namespace {
+
+constexpr std::string_view all_cameras = "all";
+
+std::uint32_t side(double length) {
+  return std::clamp(static_cast<std::uint32_t>(std::lround(length)), protocol::min_frame_size,
+                    protocol::max_frame_size);
+}
+
+template <class Named>
+std::vector<std::string_view> names_of(const std::vector<Named>& list) {
+  std::vector<std::string_view> names;
+  for (const Named& entry : list) names.push_back(entry.name);
+  return names;
+}
+
+scene::Camera camera_of(const protocol::RenderView& view) {
+  const auto vector = [](const std::array<float, 3>& v) { return glm::vec3(v[0], v[1], v[2]); };
+  scene::Camera camera;
+  camera.name = "view";
+  camera.eye = vector(view.eye);
+  camera.target = vector(view.target);
+  camera.up = vector(view.up);
+  camera.vertical_fov = view.vertical_fov;
+  return camera;
+}
+
+std::vector<scene::Camera> choose_cameras(const scene::Scene& scene,
+                                          const protocol::RenderRequest& request) {
+  if (request.view) return {camera_of(*request.view)};
+  if (request.camera == all_cameras && !scene.cameras.empty()) return scene.cameras;
+  if (!request.camera.empty() && request.camera != all_cameras) {
+    if (const scene::Camera* camera = scene::find_camera(scene, request.camera)) return {*camera};
+    const std::string many = std::to_string(scene.cameras.size());
+    const std::string what =
+        scene.cameras.empty() ? "no cameras" : "no camera " + request.camera + " among its " + many;
+    throw std::runtime_error("--camera: the scene has " + what +
+                             protocol::suggestion(request.camera, names_of(scene.cameras)));
+  }
+  if (!scene.cameras.empty()) return {scene.cameras.front()};
+  const FrameSize size = frame_size(request);
+  const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
+  return {scene::fit_camera(scene.bounds, scene::Camera().vertical_fov, aspect)};
+}
+
+std::string length_of(const scene::Clip& clip) {
+  return "the clip " + clip.name + " is " +
+         protocol::number_text(std::round(1e3 * static_cast<double>(clip.duration)) / 1e3) +
+         " s long";
+}
+
+/// The clip that the request names, or null if it names none.
+const scene::Clip* choose_clip(const scene::Scene& scene, const protocol::RenderRequest& request) {
+  if (request.clip.empty()) return nullptr;
+  if (const scene::Clip* clip = scene::find_clip(scene, request.clip)) return clip;
+  if (scene.clips.empty()) throw std::runtime_error("--clip: the scene has no clips");
+  throw std::runtime_error("--clip: the scene has no clip " + request.clip +
+                           protocol::suggestion(request.clip, names_of(scene.clips)));
+}
+
+/// The camera at a time of the clip, if the clip moves it.
+scene::Camera posed(const scene::Scene& scene, const scene::Camera& camera, const scene::Clip* clip,
+                    double seconds) {
+  if (!clip || !scene::carries(scene, *clip, camera)) return camera;
+  scene::Pose pose = scene::rest_pose(scene);
+  scene::evaluate(scene, *clip, seconds, pose);
+  return scene::camera_at(scene, camera, pose);
+}
+
+/// The camera carried around the vertical axis through the middle of the scene.
+scene::Camera turned(const scene::Scene& scene, scene::Camera camera, double turns) {
+  const glm::vec3 middle = scene.bounds.empty() ? camera.target : scene.bounds.center();
+  const auto angle = static_cast<float>(2.0 * std::numbers::pi * turns);
+  const glm::mat3 rotation(glm::rotate(glm::mat4(1.0f), angle, glm::vec3(0.0f, 1.0f, 0.0f)));
+  camera.eye = middle + rotation * (camera.eye - middle);
+  camera.target = middle + rotation * (camera.target - middle);
+  camera.up = rotation * camera.up;
+  return camera;
+}
+
+}  // namespace
+
+std::uint32_t frame_count(const protocol::RenderRequest& request) {
+  return request.turntable ? *request.turntable : request.frames.value_or(1);
+}
+
+FrameSize frame_size(const protocol::RenderRequest& request) {
+  const FrameSize usual;
+  const double aspect = static_cast<double>(usual.width) / usual.height;
+  if (request.width)
+    return {*request.width, request.height.value_or(side(*request.width / aspect))};
+  if (request.height) return {side(*request.height * aspect), *request.height};
+  return usual;
+}
+
+std::vector<Shot> plan_shots(const scene::Scene& scene, const protocol::RenderRequest& request) {
+  const scene::Clip* const clip = choose_clip(scene, request);
+  if (clip && request.time > static_cast<double>(clip->duration)) {
+    throw std::runtime_error("--time: " + length_of(*clip));
+  }
+  std::vector<Shot> shots;
+  const std::uint32_t frames = frame_count(request);
+  std::size_t camera_number = 0;
+  for (const scene::Camera& camera : choose_cameras(scene, request)) {
+    for (std::uint32_t i = 0; i < frames; ++i) {
+      const double seconds = request.time + (request.turntable ? 0.0 : i / request.fps);
+      scene::Camera at_time = posed(scene, camera, clip, seconds);
+      if (request.turntable) at_time = turned(scene, at_time, static_cast<double>(i) / frames);
+      at_time.name = camera.name;
+      const bool cut = i == 0 || request.turntable.has_value();
+      shots.push_back({.camera = at_time,
+                       .seconds = seconds,
+                       .frame = i,
+                       .camera_number = camera_number,
+                       .cut = cut});
+    }
+    ++camera_number;
+  }
+  return shots;
+}
+
+std::string note_on_clip(const scene::Scene& scene, const protocol::RenderRequest& request) {
+  const scene::Clip* const clip = choose_clip(scene, request);
+  if (!clip || request.turntable) return {};
+  const double left = static_cast<double>(clip->duration) - request.time;
+  const auto within = static_cast<std::uint32_t>(std::floor(left * request.fps + 1e-6)) + 1;
+  if (frame_count(request) <= within) return {};
+  return length_of(*clip) + ": frames from " + std::to_string(within) + " on repeat it";
+}
+
+}  // namespace heliograph::cli

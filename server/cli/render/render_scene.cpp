@@ -1,0 +1,280 @@
+#include "cli/render/render_scene.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cli/engine_options.hpp"
+#include "cli/render/output_file.hpp"
+#include "cli/render/quality.hpp"
+#include "cli/render/render_plan.hpp"
+#include "cli/render/render_timings.hpp"
+#include "protocol/limits.hpp"
+#include "render/api/renderer.hpp"
+#include "scene/import.hpp"
+#include "scene/studio.hpp"
+#include "session/library/environment_source.hpp"
+#include "session/rendering/capture_content.hpp"
+
+namespace heliograph::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint32_t measured_frames = 16;
+
+template <class Value>
+Value accepted(protocol::Result<Value> result) {
+  if (!result) throw std::runtime_error(result.error().message);
+  return *std::move(result);
+}
+
+void accept(const protocol::Result<void>& result) {
+  if (!result) throw std::runtime_error(result.error().message);
+}
+
+std::shared_ptr<const scene::Environment> environment_of(RenderContext& context,
+                                                         const RenderTask& task) {
+  const fs::path scene = task.request.scene;
+  fs::path file = task.request.environment;
+  if (file.empty()) {
+    const auto beside = session::environment_beside(scene, scene.parent_path());
+    if (beside) file = *beside;
+  }
+  auto& environment = context.environments[file.string()];
+  if (!environment) {
+    environment = std::make_shared<const scene::Environment>(
+        file.empty() ? scene::studio_environment()
+                     : scene::load_environment(file));
+  }
+  return environment;
+}
+
+void set_up_device(RenderContext& context) {
+  if (context.engine) return;
+  context.engine = make_engine(context.options.device);
+  if (const std::string error = context.engine->shader_error(); !error.empty()) {
+    throw std::runtime_error(error);
+  }
+}
+
+bool shows(const SceneInUse& scene, const protocol::RenderRequest& request) {
+  return scene.resources && scene.file == request.scene &&
+         scene.environment == request.environment && scene.variant == request.variant;
+}
+
+/// A file and its images: one, or all of a camera.
+struct PlannedFile {
+  fs::path path;  // empty: standard output
+  std::vector<Shot> shots;
+};
+
+/// Whether the next image begins another file.
+bool begins_file(const RenderTask& task, const std::vector<PlannedFile>& files, const Shot& shot) {
+  return files.empty() || !holds_frames(task.format) ||
+         files.back().shots.front().camera_number != shot.camera_number;
+}
+
+std::vector<PlannedFile> plan_files(RenderContext& context, const RenderTask& task,
+                                    const std::vector<Shot>& shots) {
+  std::vector<PlannedFile> files;
+  for (const Shot& shot : shots) {
+    if (!begins_file(task, files, shot)) {
+      files.back().shots.push_back(shot);
+      continue;
+    }
+    fs::path file;
+    if (!task.output.is_standard_output()) {
+      file = task.output.file({.scene = fs::path(task.request.scene).stem().string(),
+                               .camera = shot.camera.name,
+                               .frame = shot.frame});
+      if (!context.written.insert(file).second) {
+        throw std::runtime_error("--output: " + file.string() + " would be written twice");
+      }
+      if (!can_write(file)) throw std::runtime_error("--output: cannot write " + file.string());
+    }
+    files.push_back({.path = std::move(file), .shots = {shot}});
+  }
+  return files;
+}
+
+/// The files that --resume keeps. Frames of a clip continue each other's histories: they are kept
+/// only if all of them are there, so that the bytes do not depend on where a run was interrupted.
+std::set<fs::path> existing_files(const RenderOptions& options,
+                                  const std::vector<PlannedFile>& files) {
+  std::set<fs::path> kept;
+  if (!options.resume) return kept;
+  std::set<fs::path> run;
+  bool whole = true;
+  const auto end_run = [&] {
+    if (whole) kept.merge(run);
+    run.clear();
+    whole = true;
+  };
+  for (const PlannedFile& file : files) {
+    if (file.shots.front().cut) end_run();
+    std::error_code ignored;
+    whole = whole && fs::is_regular_file(file.path, ignored);
+    run.insert(file.path);
+  }
+  end_run();
+  return kept;
+}
+
+/// Settings and scene decide which buffers there are.
+void check_buffer(const render::Renderer& renderer, const std::string& name) {
+  const auto& buffers = renderer.buffers();
+  if (std::ranges::find(buffers, name, &render::BufferInfo::name) != buffers.end()) return;
+  throw std::runtime_error("--buffer: frames of this scene with these settings have no " + name);
+}
+
+/// When an image is complete: converged, or good enough, or late.
+class ImageEnd {
+ public:
+  explicit ImageEnd(const protocol::RenderRequest& request) : request_(request) {}
+
+  bool reached(const render::Frame& frame) {
+    if (frame.converged || frame.samples >= request_.samples.value_or(most_samples)) return true;
+    if (request_.time_limit && Clock::now() - begin_ >= Seconds(*request_.time_limit)) return true;
+    if (!request_.quality || !estimate_.wants(frame.samples)) return false;
+    const auto similarity = estimate_.add(frame.rgba, frame.width, frame.samples);
+    return similarity && *similarity >= *request_.quality;
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using Seconds = std::chrono::duration<double>;
+  static constexpr std::uint32_t most_samples = protocol::max_samples_per_pixel;
+
+  const protocol::RenderRequest& request_;
+  const Clock::time_point begin_ = Clock::now();
+  QualityEstimate estimate_;
+};
+
+session::CaptureContent render_image(RenderContext& context, render::Renderer& renderer,
+                                     const RenderTask& task) {
+  const auto canceled = [&] { return context.canceled.load(); };
+  std::uint32_t samples = 0;
+  bool complete = false;
+  Coverage coverage;
+  ImageEnd end(task.request);
+  while (!complete) {
+    const std::optional<render::Frame> frame = renderer.render(canceled);
+    if (!frame || canceled()) throw RenderCanceled();
+    samples = frame->samples;
+    if (!task.background.is_sky()) coverage.add(renderer, *frame);
+    complete = end.reached(*frame);
+  }
+  context.report.image(samples);
+  auto content =
+      accepted(session::read_content(renderer, task.request.buffer, read_format(task.format)));
+  if (!task.background.is_sky()) {
+    put_background(std::get<render::Frame>(content.values).rgba, coverage.mean(), task.background);
+  }
+  return content;
+}
+
+void render_file(RenderContext& context, render::Renderer& renderer, const RenderTask& task,
+                 const PlannedFile& file) {
+  const auto alpha =
+      task.background.is_transparent() ? stream::Alpha::kept : stream::Alpha::ignored;
+  const auto output =
+      open_output(file.path, {.format = task.format, .fps = task.request.fps, .alpha = alpha});
+  for (const Shot& shot : file.shots) {
+    if (shot.cut) renderer.reset();
+    accept(renderer.set_pose(task.request.clip, shot.seconds));
+    renderer.set_camera(shot.camera);
+    output->add(render_image(context, renderer, task));
+  }
+  output->finish();
+  context.report.file(file.path);
+}
+
+void print_timings(RenderContext& context, const RenderTask& task, render::Renderer& renderer) {
+  const FrameSize size = frame_size(task.request);
+  nlohmann::json line = measure_passes(renderer, task.settings,
+                                       context.options.request.frames.value_or(measured_frames));
+  line["scene"] = fs::path(task.request.scene).filename().string();
+  line["device"] = context.engine->device().name;
+  line["tracer"] = protocol::enum_name(context.engine->tracer());
+  line["width"] = size.width;
+  line["height"] = size.height;
+  std::printf("%s\n", line.dump().c_str());
+}
+
+/// The scene on the device, and the scene itself if it had to be read.
+void load(RenderContext& context, const RenderTask& task, std::unique_ptr<scene::Scene> scene) {
+  context.scene = {};
+  auto environment = environment_of(context, task);
+  set_up_device(context);
+  context.scene = {.file = task.request.scene,
+                   .environment = task.request.environment,
+                   .variant = task.request.variant,
+                   .resources = context.engine->upload_and_free_pixels(std::move(scene),
+                                                                       std::move(environment))};
+}
+
+std::unique_ptr<scene::Scene> read_scene(const RenderContext& context, const RenderTask& task) {
+  return std::make_unique<scene::Scene>(
+      scene::import_gltf(task.request.scene, context.options.limits, {}, nullptr,
+                         {.scene = {}, .variant = task.request.variant}));
+}
+
+void prepare(RenderContext& context, const RenderTask& task, render::Renderer& renderer,
+             const Shot& first) {
+  const FrameSize size = frame_size(task.request);
+  renderer.set_scene(context.scene.resources);
+  renderer.set_size(size.width, size.height);
+  renderer.set_camera(first.camera);
+  accept(renderer.set_settings(task.settings));
+  check_buffer(renderer, task.request.buffer);
+  if (context.options.timings) {
+    print_timings(context, task, renderer);
+    // Start again without history, so that the file does not depend on --timings.
+    renderer.set_scene(context.scene.resources);
+    accept(renderer.set_settings(task.settings));
+  }
+  renderer.set_frame_seconds(static_cast<float>(1.0 / task.request.fps));
+}
+
+}  // namespace
+
+std::size_t expected_images(const RenderTask& task) {
+  return frame_count(task.request);
+}
+
+void render_task(RenderContext& context, const RenderTask& task) {
+  const protocol::RenderRequest& request = task.request;
+  std::unique_ptr<scene::Scene> read;
+  if (!shows(context.scene, request)) read = read_scene(context, task);
+  const scene::Scene& scene = read ? *read : *render::scene_of(*context.scene.resources);
+  const std::vector<Shot> shots = plan_shots(scene, request);
+  const std::vector<PlannedFile> files = plan_files(context, task, shots);
+  if (const std::string note = note_on_clip(scene, request); !note.empty()) {
+    std::fprintf(stderr, "heliograph: %s: %s\n", request.scene.c_str(), note.c_str());
+  }
+  const std::set<fs::path> kept = existing_files(context.options, files);
+  context.report.begin(task.number, request.scene, shots.size(), expected_images(task));
+  std::optional<render::Renderer> renderer;
+  for (const PlannedFile& file : files) {
+    if (kept.contains(file.path)) {
+      context.report.keep(file.path, file.shots.size());
+      continue;
+    }
+    if (read) load(context, task, std::move(read));
+    if (!renderer) {
+      renderer.emplace(*context.engine);
+      prepare(context, task, *renderer, file.shots.front());
+    }
+    render_file(context, *renderer, task, file);
+  }
+  context.report.done();
+}
+
+}  // namespace heliograph::cli
