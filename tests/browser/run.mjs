@@ -1,5 +1,5 @@
-// Runs every *.test.mjs, or with --long every *.long.mjs, one after another: they share the CPU
-// with a software renderer. Exits with 77, which ctest reports as "skipped", without a browser or
+// Runs every *.test.mjs, or with --long those of the folder long, one after another: they share the
+// CPU with a software renderer. Exits with 77, which ctest reports as "skipped", without a browser or
 // server.
 
 import { spawnSync } from "node:child_process";
@@ -20,12 +20,13 @@ if (!process.env.HELIOGRAPH_SCENE_ROOT) skip("HELIOGRAPH_SCENE_ROOT is not set")
 
 const long = process.argv.includes("--long");
 const filters = process.argv.slice(2).filter((argument) => argument !== "--long");
-const files = readdirSync(here)
-  .filter((name) => name.endsWith(long ? ".long.mjs" : ".test.mjs"))
+const folder = long ? join(here, "long") : here;
+const files = readdirSync(folder)
+  .filter((name) => name.endsWith(long ? ".mjs" : ".test.mjs"))
   .filter((name) => filters.length === 0 || filters.some((part) => name.includes(part)));
 let failed = files.length === 0;
 for (const name of files) {
-  const run = spawnSync(process.execPath, ["--test", join(here, name)], { stdio: "inherit" });
+  const run = spawnSync(process.execPath, ["--test", join(folder, name)], { stdio: "inherit" });
   failed ||= run.status !== 0;
 }
 process.exit(failed ? 1 : 0);

@@ -50,8 +50,7 @@ std::shared_ptr<const scene::Environment> environment_of(RenderContext& context,
   auto& environment = context.environments[file.string()];
   if (!environment) {
     environment = std::make_shared<const scene::Environment>(
-        file.empty() ? scene::studio_environment()
-                     : scene::load_environment(file));
+        file.empty() ? scene::studio_environment() : scene::load_environment(file));
   }
   return environment;
 }

@@ -2,8 +2,8 @@
 // `ctest -C long -R browser_endurance`.
 
 import assert from "node:assert/strict";
-import { eventually, prepareWorker } from "./harness/browser.mjs";
-import { Stage } from "./harness/stage.mjs";
+import { eventually, prepareWorker } from "../harness/browser.mjs";
+import { Stage } from "../harness/stage.mjs";
 
 const frames = 500;
 const maxGrowth = 4e6; // bytes

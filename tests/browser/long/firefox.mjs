@@ -5,10 +5,10 @@
 import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
 import { join } from "node:path";
-import { eventually } from "./harness/browser.mjs";
-import { outputFolder } from "./harness/environment.mjs";
-import { Firefox } from "./harness/marionette.mjs";
-import { Stage } from "./harness/stage.mjs";
+import { eventually } from "../harness/browser.mjs";
+import { outputFolder } from "../harness/environment.mjs";
+import { Firefox } from "../harness/marionette.mjs";
+import { Stage } from "../harness/stage.mjs";
 
 const path =
   process.env.HELIOGRAPH_FIREFOX ??

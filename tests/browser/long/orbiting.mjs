@@ -4,9 +4,9 @@
 import assert from "node:assert/strict";
 import { appendFileSync } from "node:fs";
 import { join } from "node:path";
-import { figure, openTab, settle, viewScreenshot } from "./harness/browser.mjs";
-import { outputFolder } from "./harness/environment.mjs";
-import { Stage } from "./harness/stage.mjs";
+import { figure, openTab, settle, viewScreenshot } from "../harness/browser.mjs";
+import { outputFolder } from "../harness/environment.mjs";
+import { Stage } from "../harness/stage.mjs";
 
 const orbitMs = 8000;
 const stage = new Stage({

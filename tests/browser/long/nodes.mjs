@@ -2,8 +2,8 @@
 // failed server continue on another one without affecting its sessions.
 
 import assert from "node:assert/strict";
-import { seriousFindings } from "./harness/axe.mjs";
-import { Balancer } from "./harness/balancer.mjs";
+import { seriousFindings } from "../harness/axe.mjs";
+import { Balancer } from "../harness/balancer.mjs";
 import {
   distance,
   dragView,
@@ -11,9 +11,9 @@ import {
   firstFrame,
   staticCamera,
   screenshot,
-} from "./harness/browser.mjs";
-import { startServer } from "./harness/server.mjs";
-import { Stage } from "./harness/stage.mjs";
+} from "../harness/browser.mjs";
+import { startServer } from "../harness/server.mjs";
+import { Stage } from "../harness/stage.mjs";
 
 const view = { viewport: { width: 720, height: 450 } };
 const permissions = ["clipboard-read", "clipboard-write"];

@@ -4,9 +4,9 @@
 import assert from "node:assert/strict";
 import { createRequire } from "node:module";
 import { fileURLToPath } from "node:url";
-import { Stage } from "./harness/stage.mjs";
+import { Stage } from "../harness/stage.mjs";
 
-const repository = new URL("../../", import.meta.url);
+const repository = new URL("../../../", import.meta.url);
 const esbuild = createRequire(new URL("web_client/package.json", repository))("esbuild");
 
 const stage = new Stage({ scene: "mirror" });

@@ -4,9 +4,9 @@
 import assert from "node:assert/strict";
 import { appendFileSync } from "node:fs";
 import { join } from "node:path";
-import { eventually } from "./harness/browser.mjs";
-import { outputFolder } from "./harness/environment.mjs";
-import { Stage } from "./harness/stage.mjs";
+import { eventually } from "../harness/browser.mjs";
+import { outputFolder } from "../harness/environment.mjs";
+import { Stage } from "../harness/stage.mjs";
 
 const maxLoadMs = 500; // ms
 const oneFrame = 1000 / 30; // ms
