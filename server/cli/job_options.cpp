@@ -40,6 +40,7 @@ std::vector<std::string> render_arguments(const ServeOptions& options) {
   add("--max-nodes", std::to_string(limits.nodes));
   add("--max-instances", std::to_string(limits.instances));
   add("--max-node-depth", std::to_string(limits.node_depth));
+  if (limits.strict_assets) arguments.push_back("--strict-assets");
   return arguments;
 }
 

@@ -195,7 +195,7 @@ void JobQueue::run() {
       if (job) {
         announce(job->id);
         render(*job);
-      } else if (!wait(queue_event_, expiry_interval)) {
+      } else if (!wait(queue_event_, std::min(expiry_interval, options_.keep_seconds))) {
         return;
       }
     } catch (const std::exception& failure) {

@@ -267,7 +267,7 @@ class KilledServer(ServerTestCase):
         server.stop()
 
     def test_quota_and_expiry(self):
-        server, client = self.serve("--job-quota", "1000", "--keep-jobs", "1")
+        server, client = self.serve("--job-quota", "1000", "--keep-jobs", "10")
         job = client.wait(client.create(small(), small()))
         self.assertEqual(job["state"], "failed")
         self.assertIn("quota", job["failures"][-1]["reason"])
