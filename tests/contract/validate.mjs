@@ -29,6 +29,8 @@ function openRpcValidator() {
 const ours = ["x-unit", "x-resets", "x-order"];
 const ajv = new Ajv2020({ strict: true, allowUnionTypes: true, allErrors: true });
 ours.forEach((keyword) => ajv.addKeyword(keyword));
+// A note for editors; the pattern beside it says what is valid.
+ajv.addFormat("color", true);
 
 function check(where, schema, value) {
   let validate;
