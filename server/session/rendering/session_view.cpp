@@ -20,6 +20,7 @@ constexpr std::chrono::seconds retry_delay{1};
 constexpr std::chrono::seconds sharing_window{1};
 /// Frames of static views trace every sample: about how much longer they take than moving ones.
 constexpr int refining_frame_factor = 2;
+constexpr std::chrono::milliseconds frame_time_for_depth{20};
 
 std::uint32_t microseconds_of(Clock::duration duration) {
   return static_cast<std::uint32_t>(duration_cast<microseconds>(duration).count());
@@ -201,6 +202,13 @@ bool SessionView::moves() const {
   return Clock::now() < moving_frame_at_ + sharing_window;
 }
 
+/// A GPU has to copy it, which takes as long as a fast frame; and frames that come this often need
+/// nothing between them.
+bool SessionView::depth_pays() const {
+  return engine_.device().type == protocol::DeviceType::cpu ||
+         full_frame_time_ == Clock::duration::zero() || full_frame_time_ >= frame_time_for_depth;
+}
+
 bool SessionView::is_full_size() const {
   return draw_scale_ == 1.0f;
 }
@@ -321,7 +329,7 @@ std::shared_ptr<RenderedFrame> SessionView::describe(render::Frame frame, Clock:
   rendered->discontinuities = discontinuities_;
   rendered->fps = static_cast<double>(frame_times_.size());
   rendered->depth_read = session_->viewers().wants_depth();
-  if (rendered->depth_read) rendered->depth = renderer_->depth();
+  if (rendered->depth_read && depth_pays()) rendered->depth = renderer_->depth();
   return rendered;
 }
 

@@ -81,6 +81,7 @@ class SessionView {
   void keep_buffers();
   void set_draw_scale(float scale);
   void measure_frame(ViewState state, Clock::duration taken);
+  bool depth_pays() const;
   bool is_full_size() const;
   bool needs_frame() const;
   ViewInputs view_inputs() const;
