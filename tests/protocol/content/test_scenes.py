@@ -1,6 +1,7 @@
 """Loading scenes: only from the catalogue, atomically."""
 
 import asyncio
+import json
 import os
 import re
 import shutil
@@ -43,9 +44,10 @@ class Scenes(ServerTestCase):
         for name, data in cls.broken.items():
             with open(os.path.join(root, "broken", name + ".glb"), "wb") as file:
                 file.write(data)
+        escape, positions = document([0, 0, 0, 1, 0, 0, 0, 1, 0], [0, 1, 2])
+        escape["buffers"] = [{"uri": "../../secret.bin", "byteLength": len(positions)}]
         with open(os.path.join(root, "broken", "escape.gltf"), "w", encoding="ascii") as file:
-            file.write('{"asset": {"version": "2.0"}, "buffers": [{"uri": "../../secret.bin", '
-                       '"byteLength": 4}]}')
+            json.dump(escape, file)
         shutil.copy(os.path.join(given, "mirror.glb"), os.path.join(cls.folder.name, "secret.glb"))
         cls.server = Server("--scene", "mirror", scenes=root)
 
