@@ -68,7 +68,7 @@ stage.test("the list of buffers follows the settings", async () => {
 });
 
 stage.test("the first visit tells how to move, until the view is moved", async () => {
-  const context = await stage.context();
+  const context = await stage.context({ firstVisit: true });
   const { page } = await stage.watch({ context });
   const hint = page.getByText(/^Drag to orbit, wheel to zoom/);
   await hint.waitFor();

@@ -48,14 +48,20 @@ export class Stage {
     });
   }
 
-  /** A browser context that is closed after the test. */
-  async context(options = {}) {
+  /**
+   * A browser context that is closed after the test. The hint of a first visit, which covers a part
+   * of the view, is shown with `firstVisit` only.
+   */
+  async context({ firstVisit = false, ...options } = {}) {
     const context = await browser.newContext({
       viewport: { width: 960, height: 540 },
       colorScheme: "dark",
       ...this.view,
       ...options,
     });
+    if (!firstVisit) {
+      await context.addInitScript(() => localStorage.setItem("heliograph.hint_seen", "1"));
+    }
     this.contexts.add(context);
     return context;
   }
