@@ -128,7 +128,8 @@ stage.test("a load that is cancelled says so, and is no error", async () => {
 });
 
 stage.test("the first frame of a new page has the requested size", async () => {
-  await stage.watch({ viewport: { width: 900, height: 300 } });
+  const { page: wide } = await stage.watch({ viewport: { width: 900, height: 300 } });
+  await wide.close();
   const context = await stage.context({ viewport: { width: 400, height: 400 } });
   await context.addInitScript(() => {
     window.shapes = [];

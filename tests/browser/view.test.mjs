@@ -72,6 +72,7 @@ stage.test("a drag orbits around the point that was clicked", async () => {
   const { position } = await stage.server.call("scene.pick", at);
   const { x, y, width, height } = await page.locator("#view").boundingBox();
   await page.mouse.move(x + at.x * width, y + at.y * height);
+  await settle(page, stage.server);
   // The drag begins when the server has told the page the point.
   const answers = await page.evaluate(() => window.seen.answers);
   await page.mouse.down();

@@ -8,6 +8,9 @@ import { Signal } from "../common/signal.ts";
 /** So many frames of older settings may still arrive after a change. */
 const framesOnTheWay = 3;
 
+// A static view may send fewer frames than that.
+const lateReadMs = 3000;
+
 export class ServerCapabilities {
   readonly buffers = new Signal<BufferInfo[]>([]);
   /** File formats of `frame.capture`. */
@@ -18,6 +21,7 @@ export class ServerCapabilities {
   private readonly rpc: RpcPeer;
   /** Frames to draw before the list of buffers is read again; null: it is up to date. */
   private framesUntilRead: number | null = null;
+  private lateRead: ReturnType<typeof setTimeout> | undefined;
 
   constructor(rpc: RpcPeer) {
     this.rpc = rpc;
@@ -49,6 +53,10 @@ export class ServerCapabilities {
   /** Frames with these settings may have other buffers. */
   settingsChanged(): void {
     this.framesUntilRead = framesOnTheWay;
+    clearTimeout(this.lateRead);
+    this.lateRead = setTimeout(() => {
+      if (this.framesUntilRead !== null) void this.readBuffers().catch(() => undefined);
+    }, lateReadMs);
   }
 
   async frameDrawn(): Promise<void> {
