@@ -74,9 +74,10 @@ stage.test("a drag orbits around the point that was clicked", async () => {
   await page.mouse.move(x + at.x * width, y + at.y * height);
   await settle(page, stage.server);
   // The drag begins when the server has told the page the point.
-  const answers = await page.evaluate(() => window.seen.answers);
+  const picks = () => page.evaluate(() => window.seen.answered["scene.pick"] ?? 0);
+  const before = await picks();
   await page.mouse.down();
-  await page.waitForFunction((count) => window.seen.answers > count, answers);
+  await eventually(async () => (await picks()) > before, "the clicked point");
   await page.mouse.move(x + at.x * width + 120, y + at.y * height, { steps: 6 });
   await page.mouse.up();
   const { eye } = await staticCamera(page, stage.server);

@@ -22,16 +22,18 @@ function observe() {
     /** Number of calls sent and notifications received, by method. */
     sent: {},
     received: {},
-    /** Number of answers to calls. */
-    answers: 0,
+    /** Number of answers to calls, by method. */
+    answered: {},
   };
   window.seen = seen;
   const count = (table, name) => (table[name] = (table[name] ?? 0) + 1);
   let stream = null; // the first worker; others belong to comparisons
+  const calls = new Map(); // methods of calls without an answer, by id
 
   const sent = (text) => {
-    const { method, params } = JSON.parse(text);
+    const { id, method, params } = JSON.parse(text);
     count(seen.sent, method);
+    if (id !== undefined) calls.set(id, method);
     if (method === "camera.set" && params.eye) {
       seen.poses += 1;
       seen.pose = params;
@@ -40,8 +42,11 @@ function observe() {
     }
   };
   const received = (text) => {
-    if (!/"method"/.test(text.slice(0, 60))) {
-      seen.answers += 1; // a result, which may be large
+    const start = text.slice(0, 60); // a result may be large
+    if (!/"method"/.test(start)) {
+      const id = Number(/"id":(\d+)/.exec(start)?.[1]);
+      if (calls.has(id)) count(seen.answered, calls.get(id));
+      calls.delete(id);
       return;
     }
     const { method, params } = JSON.parse(text);

@@ -60,7 +60,10 @@ export class Stage {
       ...options,
     });
     if (!firstVisit) {
-      await context.addInitScript(() => localStorage.setItem("heliograph.hint_seen", "1"));
+      await context.addInitScript(() => {
+        if (location.protocol === "about:") return; // without storage
+        localStorage.setItem("heliograph.hint_seen", "1");
+      });
     }
     this.contexts.add(context);
     return context;

@@ -14,7 +14,7 @@ COMMANDS = """
     scene.load scene.unload scene.cancel camera.set camera.fit camera.orbit
     settings.patch settings.preset animation.play animation.pause animation.seek animation.rate
     session.create session.close session.control materials.patch lights.patch environment.set
-    frame.step frame.run reference.start reference.stop
+    frame.step frame.run reference.start reference.stop job.create job.cancel
     """.split()
 PERSONAL = "stream.pause stream.resume stream.ack stream.configure stats.subscribe".split()
 

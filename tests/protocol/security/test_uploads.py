@@ -6,6 +6,7 @@ import struct
 import tempfile
 import threading
 
+from harness.gltf import document
 from harness.raw_socket import RawSocket
 from harness.server import Server, ServerTestCase
 
@@ -18,9 +19,9 @@ def scene_file(name):
         return file.read()
 
 
-def glb(document, binary=b""):
+def glb(content, binary=b""):
     """A binary glTF of this JSON."""
-    text = json.dumps(document).encode()
+    text = json.dumps(content).encode()
     text += b" " * (-len(text) % 4)
     chunks = struct.pack("<I4s", len(text), b"JSON") + text
     if binary:
@@ -86,11 +87,11 @@ class Uploads(ServerTestCase):
         self.assertEqual(os.listdir(os.path.join(self.folder.name, "scenes")), [])
 
     def test_invalid_scenes_are_refused(self):
-        buffer = {"asset": {"version": "2.0"}, "buffers": [{"byteLength": 4, "uri": "x.bin"}]}
-        escape = {"asset": {"version": "2.0"},
-                  "buffers": [{"byteLength": 4, "uri": "../../../etc/passwd"}]}
+        external, escape = (document([0, 0, 0, 1, 0, 0, 0, 1, 0], [0, 1, 2])[0] for _ in range(2))
+        external["buffers"][0]["uri"] = "x.bin"
+        escape["buffers"][0]["uri"] = "../../../etc/passwd"
         for body in (b"", b"glTF", b"nonsense" * 20, b"\x89PNG\r\n\x1a\n" + b"x" * 50,
-                     self.mirror[:-10], self.mirror + b"tail", glb({}), glb(buffer), glb(escape),
+                     self.mirror[:-10], self.mirror + b"tail", glb({}), glb(external), glb(escape),
                      b'{"asset":{"version":"2.0"}}', struct.pack("<4sII", b"glTF", 1, 12),
                      self.mirror[:2000] + b"\xff" * 500 + self.mirror[2500:2600]):
             status, answer = self.put("broken", body)
