@@ -1,6 +1,7 @@
 #include "render/frame/probe.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/api/octahedral.hpp"
 #include "render/frame/buffer_list.hpp"
@@ -20,6 +21,33 @@ glm::uvec2 pixel_at(glm::vec2 point, VkExtent2D extent) {
 glm::vec4 texel(const gpu::Image& image, glm::uvec2 pixel) {
   const std::vector<float> value = read_texel(image, pixel.x, pixel.y).rgba;
   return {value[0], value[1], value[2], value[3]};
+}
+
+/// What a point of the frame sees, in view space.
+struct ViewRay {
+  glm::vec3 origin, direction;  // direction: per metre of depth
+
+  glm::vec3 at(float depth) const { return origin + depth * direction; }
+};
+
+/// `offset`: of the sample within the pixel; zero for a point of the image that is shown.
+ViewRay view_ray(const shared::FrameConstants& frame, glm::vec2 point, glm::vec2 offset) {
+  const glm::vec2 scale(frame.unproject);
+  const glm::vec2 across = (point * 2.0f - 1.0f) * scale + offset;
+  if ((frame.flags & shared::frame_orthographic) != 0) {
+    return {glm::vec3(across, 0.0f), glm::vec3(0.0f, 0.0f, -1.0f)};
+  }
+  return {glm::vec3(0.0f), glm::vec3(across, -1.0f)};
+}
+
+/// Where `ray` meets the plane through `sample`, the surface that the pixel shows, so that a point
+/// within a large pixel is as exact as the surface is flat. Where the plane is seen edge on, the
+/// sample's depth stays.
+glm::vec3 on_surface(const ViewRay& ray, glm::vec3 sample, glm::vec3 normal) {
+  constexpr float most_change = 0.1f;  // of the depth, within a pixel
+  const float depth = glm::dot(normal, sample - ray.origin) / glm::dot(normal, ray.direction);
+  const bool plausible = std::abs(depth + sample.z) <= -most_change * sample.z;  // false for NaN
+  return ray.at(plausible ? depth : -sample.z);
 }
 
 /// Blends the mean into the frame's own radiance by its weight in x of `weights`, as present()
@@ -91,21 +119,22 @@ protocol::Result<std::optional<SurfacePoint>> surface_at(const CompiledFrame& co
   if (instance == 0 || view_z <= 0.0f) return std::optional<SurfacePoint>();
 
   const bool orthographic = (frame.flags & shared::frame_orthographic) != 0;
-  const glm::vec2 ndc = (glm::vec2(pixel) + 0.5f) / glm::vec2(frame.extent) * 2.0f - 1.0f;
-  const glm::vec4& unproject = frame.unproject;
-  glm::vec2 across = ndc * glm::vec2(unproject) + glm::vec2(unproject.z, unproject.w);
-  if (!orthographic) across *= view_z;
-  const glm::vec3 in_view(across, -view_z);
-  SurfacePoint surface{.instance = instance - 1,
-                       .position = glm::vec3(frame.inverse_view * glm::vec4(in_view, 1.0f)),
-                       .normal = {},
-                       .distance = orthographic ? view_z : glm::length(in_view)};
   const glm::vec4 encoded = texel(normals->whole, pixel);
-  surface.normal = octahedral_decode({encoded.z, encoded.w});
+  glm::vec3 normal = octahedral_decode({encoded.z, encoded.w});
+  const glm::vec2 centre = (glm::vec2(pixel) + 0.5f) / glm::vec2(frame.extent);
+  const glm::vec2 jitter(frame.unproject.z, frame.unproject.w);
+  const glm::vec3 sample = view_ray(frame, centre, jitter).at(view_z);
+  const glm::mat3 to_view = glm::transpose(glm::mat3(frame.inverse_view));
+  const glm::vec3 in_view =
+      on_surface(view_ray(frame, point, glm::vec2(0.0f)), sample, to_view * normal);
+  const glm::vec3 position(frame.inverse_view * glm::vec4(in_view, 1.0f));
   const glm::vec3 toward_eye =
-      orthographic ? glm::vec3(frame.inverse_view[2]) : glm::vec3(frame.eye) - surface.position;
-  if (glm::dot(surface.normal, toward_eye) < 0.0f) surface.normal = -surface.normal;
-  return std::optional(surface);
+      orthographic ? glm::vec3(frame.inverse_view[2]) : glm::vec3(frame.eye) - position;
+  if (glm::dot(normal, toward_eye) < 0.0f) normal = -normal;
+  return std::optional(SurfacePoint{.instance = instance - 1,
+                                    .position = position,
+                                    .normal = normal,
+                                    .distance = orthographic ? -in_view.z : glm::length(in_view)});
 }
 
 }  // namespace heliograph::render

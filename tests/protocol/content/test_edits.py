@@ -203,6 +203,21 @@ class Edits(ServerTestCase):
         self.assert_error(self.server.ask("scene.pick", {"x": 1.5, "y": 0}), -32602, path="x")
         self.assert_error(self.server.ask("scene.pick", {"x": 0.5}), -32602, path="y")
 
+    def test_picked_positions_lie_below_the_point_and_not_the_pixel(self):
+        self.server.call("scene.load", {"name": "mirror"})
+        self.server.call("settings.patch", {"patch": {"antialiasing": {"jitter": True}}})
+        self.server.call("camera.set", {"eye": [0, 1.5, 6], "target": [0, 0.6, 0]})
+        camera = self.server.call("camera.get")
+        height = math.tan(math.radians(camera["vertical_fov"]) / 2)
+        forward = [b - a for a, b in zip(camera["eye"], camera["target"])]
+        # The floor is y = 0; in the plane x = 0 a point of the image is an angle.
+        for y in (0.8, 0.802, 0.804, 0.806):
+            angle = math.atan2(forward[1], -forward[2]) - math.atan((2 * y - 1) * height)
+            expected = camera["eye"][2] - camera["eye"][1] / math.tan(-angle)
+            picked = self.server.call("scene.pick", {"x": 0.5, "y": y})["position"]
+            for value, exact in zip(picked, (0, 0, expected)):
+                self.assertAlmostEqual(value, exact, delta=2e-3)
+
     def test_every_buffer_can_be_inspected(self):
         inspected = self.server.call("frame.inspect", {"x": 0.5, "y": 0.35})
         self.assertEqual((inspected["column"], inspected["row"]), (80, 31))
