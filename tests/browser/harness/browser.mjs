@@ -5,20 +5,27 @@ import { chromium } from "playwright-core";
 import { chromiumPath, outputFolder } from "./environment.mjs";
 import { observer } from "./observer.mjs";
 
+const launchOptions = {
+  executablePath: chromiumPath,
+  args: [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+  ],
+};
+
+/** A browser that test files use one after the other. */
+export const startBrowserServer = () => chromium.launchServer(launchOptions);
+
+/** The browser that HELIOGRAPH_TEST_BROWSER gives the address of, or a new one. */
 export function launchBrowser() {
-  return chromium.launch({
-    executablePath: chromiumPath,
-    args: [
-      "--headless",
-      "--no-sandbox",
-      "--disable-gpu",
-      "--disable-quic",
-      "--no-first-run",
-      "--disable-background-networking",
-      "--disable-component-update",
-      "--disable-sync",
-    ],
-  });
+  const address = process.env.HELIOGRAPH_TEST_BROWSER;
+  return address ? chromium.connect(address) : chromium.launch(launchOptions);
 }
 
 /** Opens the client. `pageErrors` collects console errors, exceptions and CSP violations. */
