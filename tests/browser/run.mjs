@@ -1,14 +1,15 @@
 // Runs every *.test.mjs, or with --long those of the folder long. Files run in two slots side by
 // side: while the page of one waits, the server of the other renders. Each slot has one browser, so
 // that files share neither its clipboard nor the time that it takes to start. Long ones measure, and
-// run alone. Exits with 77, which ctest reports as "skipped", without a browser or server.
+// run alone. With --firefox they run in Firefox, one browser for each file. Exits with 77, which
+// ctest reports as "skipped", without a browser or server.
 
 import { spawn } from "node:child_process";
 import { existsSync, readdirSync, statSync } from "node:fs";
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { startBrowserServer } from "./harness/browser.mjs";
-import { chromiumPath } from "./harness/environment.mjs";
+import { chromiumPath, firefoxPath } from "./harness/environment.mjs";
 
 function skip(reason) {
   console.log(`skipped: ${reason}`);
@@ -34,12 +35,13 @@ function run(path, browser) {
 }
 
 const here = dirname(fileURLToPath(import.meta.url));
-if (!existsSync(chromiumPath)) skip(`no Chromium at ${chromiumPath}`);
+const [long, inFirefox] = ["--long", "--firefox"].map((option) => process.argv.includes(option));
+if (inFirefox && !firefoxPath) skip("Firefox is not installed");
+if (!inFirefox && !existsSync(chromiumPath)) skip(`no Chromium at ${chromiumPath}`);
 if (!process.env.HELIOGRAPH_BINARY) skip("HELIOGRAPH_BINARY is not set");
 if (!process.env.HELIOGRAPH_SCENE_ROOT) skip("HELIOGRAPH_SCENE_ROOT is not set");
 
-const long = process.argv.includes("--long");
-const filters = process.argv.slice(2).filter((argument) => argument !== "--long");
+const filters = process.argv.slice(2).filter((argument) => !argument.startsWith("--"));
 const folder = long ? join(here, "long") : here;
 const files = readdirSync(folder)
   .filter((name) => name.endsWith(long ? ".mjs" : ".test.mjs"))
@@ -50,11 +52,11 @@ const files = readdirSync(folder)
 let failed = files.length === 0;
 
 async function work() {
-  const browser = await startBrowserServer();
+  const browser = inFirefox ? null : await startBrowserServer();
   for (let path = files.shift(); path; path = files.shift()) {
-    if (!(await run(path, browser.wsEndpoint()))) failed = true;
+    if (!(await run(path, browser?.wsEndpoint() ?? "firefox"))) failed = true;
   }
-  await browser.close();
+  await browser?.close();
 }
 
 await Promise.all(Array.from({ length: long ? 1 : 2 }, work));

@@ -42,13 +42,14 @@ class Viewer:
     """Use with `async with`. Acknowledges every frame by default."""
 
     def __init__(self, server, *, acknowledge=True, greet=True, session=None, name=None,
-                 port=None):
+                 port=None, token=None):
         self.server = server
         self.url = f"ws://{server.host}:{port}/ws" if port else server.websocket_url
         self.acknowledge = acknowledge
         self.greet = greet
         self.session = session
         self.name = name
+        self.headers = {"Authorization": "Bearer " + token} if token else {}
         self.frames = asyncio.Queue()
         self.last = None  # the newest frame that was looked at
         self.frames_received = 0
@@ -61,7 +62,8 @@ class Viewer:
     async def __aenter__(self):
         url = self.url + (f"?session={self.session}" if self.session else "")
         self.socket = await websockets.connect(url, max_size=None, ssl=self.server.tls,
-                                               subprotocols=[SUBPROTOCOL], compression=None)
+                                               subprotocols=[SUBPROTOCOL], compression=None,
+                                               extra_headers=self.headers)
         self._reader = asyncio.create_task(self._read())
         if self.greet:
             person = {"name": self.name} if self.name else {}

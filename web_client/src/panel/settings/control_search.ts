@@ -1,10 +1,10 @@
-// Finds controls of the whole page, which the search of the Settings tab covers: rows and buttons of
+// Finds controls of the whole page, which the search of the Advanced tab covers: rows and buttons of
 // the tabs, and what stands outside them.
 
 import { element, icon } from "../../widgets/element.ts";
 
 const highlightMs = 1600;
-const rowSelector = ".row, .field";
+const rowSelector = ".row, .field, .fields > .row-line";
 const outsideSelector = [
   "#panel > header button",
   "#top-left > div > button",
