@@ -103,10 +103,10 @@ stage.test("an image is saved in another size, with linked sides and progress", 
   const [width, height] = ["Width", "Height"].map((name) =>
     dialog.getByRole("textbox", { name }),
   );
-  assert.deepEqual([await width.inputValue(), await height.inputValue()], ["720", "405"]);
+  assert.deepEqual([await width.inputValue(), await height.inputValue()], ["360", "203"]);
   await width.fill("1440");
   await width.press("Tab");
-  assert.equal(await height.inputValue(), "810");
+  assert.equal(await height.inputValue(), "812");
   await dialog.getByRole("button", { name: "Keep the aspect ratio" }).click();
   await height.fill("99999");
   await height.press("Tab");
