@@ -27,8 +27,8 @@ std::uint8_t to_byte(float value) {
 
 Background::Background(const std::string& text) {
   if (text == "sky") return;
-  if (text == "transparent") {
-    kind_ = Kind::transparent;
+  if (text == "blurred" || text == "transparent") {
+    kind_ = text == "blurred" ? Kind::blurred : Kind::transparent;
     return;
   }
   kind_ = Kind::color;
@@ -39,7 +39,7 @@ Background::Background(const std::string& text) {
                              : std::from_chars_result{text.data(), std::errc::invalid_argument};
   if (parsed.ec != std::errc() || parsed.ptr != end) {
     throw std::invalid_argument("--background " + text +
-                                ": must be sky, transparent or a colour such as #ffffff");
+                                ": must be sky, blurred, transparent or a colour such as #ffffff");
   }
   for (std::uint32_t i = 0; i < 3; ++i) {
     color_[i] = to_linear(static_cast<float>(rgb >> (16 - 8 * i) & 255) / 255.0f);

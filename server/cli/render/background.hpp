@@ -10,19 +10,22 @@
 
 namespace heliograph::cli {
 
-/// What is behind the scene in an image: its environment, nothing, or a colour.
+/// What is behind the scene in an image: its environment, as it is or blurred, nothing, or a
+/// colour.
 class Background {
  public:
-  /// "sky", "transparent" or "#rrggbb". @throws std::invalid_argument
+  /// "sky", "blurred", "transparent" or "#rrggbb". @throws std::invalid_argument
   explicit Background(const std::string& text);
 
-  bool is_sky() const { return kind_ == Kind::sky; }
+  /// Whether the renderer draws it.
+  bool is_rendered() const { return kind_ == Kind::sky || kind_ == Kind::blurred; }
+  bool is_blurred() const { return kind_ == Kind::blurred; }
   bool is_transparent() const { return kind_ == Kind::transparent; }
   /// Linear.
   const std::array<float, 3>& color() const { return color_; }
 
  private:
-  enum class Kind { sky, transparent, color };
+  enum class Kind { sky, blurred, transparent, color };
   Kind kind_ = Kind::sky;
   std::array<float, 3> color_{};
 };

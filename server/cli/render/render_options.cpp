@@ -14,6 +14,7 @@ constexpr const char* render_examples = R"text(Examples:
   heliograph render *.glb -o "{scene}/{camera}.png" --camera all --width 640
   heliograph render helmet.glb -o turn_%03d.png --turntable 36 --background transparent
   heliograph render helmet.glb -o turn.mp4 --turntable 72
+  heliograph render helmet.glb -o front.png --orbit 0,20 --margin 0.1 --background blurred
   heliograph render helmet.glb -o - > helmet.png
   heliograph render --manifest jobs.jsonl -o "out/{scene}.webp" --resume --report report.json
   heliograph render pillars.glb -o svgf.png --preset svgf --set accumulation.blend_samples=4096
@@ -100,6 +101,18 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options) {
           "Camera of the scene by its name or its number from 1 on, or \"all\" [the first; "
           "without cameras the whole scene is in view]")
       ->type_name("NAME");
+  command
+      ->add_option("--orbit", options.orbit,
+                   "Camera that sees the whole scene from a direction, degrees: azimuth, 0 in "
+                   "front and 90 on the right, and elevation, 90 above")
+      ->type_name("AZIMUTH,ELEVATION");
+  command->add_flag("--fit", request.fit,
+                    "Keep the direction of the cameras, but move them so that they see the whole "
+                    "scene");
+  command
+      ->add_option("--margin", request.margin,
+                   "Free part of the image on each side of a scene that is fitted into it [0.037]")
+      ->check(CLI::Range(0.0, protocol::max_margin));
   command->add_option("--samples", request.samples, "Samples per pixel [accumulation.max_samples]")
       ->check(CLI::Range(1u, protocol::max_samples_per_pixel));
   command
@@ -117,7 +130,7 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options) {
   command->add_option("--buffer", request.buffer, "Buffer to write")->capture_default_str();
   command
       ->add_option("--background", request.background,
-                   "sky, transparent (.png and .webp), or a colour such as #ffffff")
+                   "sky, blurred, transparent (.png and .webp), or a colour such as #ffffff")
       ->capture_default_str();
   command->add_option("--variant", request.variant, "Material variant [the file's default]")
       ->type_name("NAME");

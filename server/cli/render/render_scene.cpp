@@ -167,13 +167,13 @@ session::CaptureContent render_image(RenderContext& context, render::Renderer& r
     const std::optional<render::Frame> frame = renderer.render(canceled);
     if (!frame || canceled()) throw RenderCanceled();
     samples = frame->samples;
-    if (!task.background.is_sky()) coverage.add(renderer, *frame);
+    if (!task.background.is_rendered()) coverage.add(renderer, *frame);
     complete = end.reached(*frame);
   }
   context.report.image(samples);
   auto content =
       accepted(session::read_content(renderer, task.request.buffer, read_format(task.format)));
-  if (!task.background.is_sky()) {
+  if (!task.background.is_rendered()) {
     put_background(std::get<render::Frame>(content.values).rgba, coverage.mean(), task.background);
   }
   return content;
