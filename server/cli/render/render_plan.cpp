@@ -13,7 +13,6 @@
 #include "protocol/limits.hpp"
 #include "scene/animation/pose.hpp"
 #include "scene/camera_choice.hpp"
-#include "scene/camera_fit.hpp"
 
 namespace heliograph::cli {
 namespace {

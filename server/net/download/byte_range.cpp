@@ -17,7 +17,7 @@ struct ByteRange {
   std::uint64_t last = 0;
 };
 
-std::optional<std::uint64_t> digits(std::string_view text) {
+std::optional<std::uint64_t> decimal(std::string_view text) {
   std::uint64_t value = 0;
   const char* const end = text.data() + text.size();
   const auto parsed = std::from_chars(text.data(), end, value);
@@ -36,7 +36,7 @@ std::optional<ByteRange> byte_range(std::string_view header, std::uint64_t size)
   const std::size_t dash = range.find('-');
   if (dash == std::string_view::npos) return std::nullopt;
   const std::string_view first_text = range.substr(0, dash), last_text = range.substr(dash + 1);
-  const auto first = digits(first_text), last = digits(last_text);
+  const auto first = decimal(first_text), last = decimal(last_text);
   if (first_text.empty()) {
     if (!last) return std::nullopt;
     return ByteRange{.first = *last == 0 ? size : size - std::min(*last, size), .last = size - 1};

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "scene/camera_fit.hpp"
+#include "scene/camera_choice.hpp"
 
 namespace heliograph::scene {
 namespace {
