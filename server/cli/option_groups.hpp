@@ -20,6 +20,8 @@ void add_settings_options(CLI::App& command, SettingsOptions& options);
 void add_environment_option(CLI::App& command, std::string& environment);
 /// Limits beyond which a scene file is refused.
 void add_limit_options(CLI::App& command, scene::ImportLimits& limits);
+/// The options that give another program of ours these limits.
+std::vector<std::string> limit_arguments(const scene::ImportLimits& limits);
 
 /// `Number` is an integer or an optional one; `otherwise` describes the default.
 template <class Number>
