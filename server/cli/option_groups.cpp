@@ -72,11 +72,15 @@ void add_shader_option(CLI::App& command, DeviceOptions& options) {
       ->group("Device");
 }
 
-void add_settings_options(CLI::App& command, SettingsOptions& options) {
+CLI::Validator preset_name() {
   std::vector<std::string> presets;
   for (const protocol::Preset& preset : protocol::presets()) presets.emplace_back(preset.name);
+  return one_of(presets);
+}
+
+void add_settings_options(CLI::App& command, SettingsOptions& options) {
   command.add_option("--preset", options.preset, "Preset of the denoiser; --set is applied on top")
-      ->check(one_of(presets))
+      ->check(preset_name())
       ->group("Frames");
   command
       .add_option("--set", options.assignments,

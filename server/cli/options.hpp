@@ -91,6 +91,18 @@ struct RenderOptions {
   DeviceOptions device;
 };
 
+struct CompareOptions {
+  std::string first;   // scene file, image file, or the address of a server
+  std::string second;  // empty: the first with the second preset
+  std::string second_preset;
+  double least_ssim = 0.98;
+  double most_flip = 1.0;
+  std::string report;  // HTML file to write; empty: none
+  std::string token;
+  std::string authorities;  // file; empty: the system's
+  RenderOptions render;     // of scenes, both
+};
+
 struct DevicesOptions {
   DeviceOptions device;
 };
@@ -110,8 +122,8 @@ struct Finished {
   int exit_code = 0;
 };
 
-using Command = std::variant<Finished, ServeOptions, RenderOptions, DevicesOptions, SchemaOptions,
-                             HealthOptions>;
+using Command = std::variant<Finished, ServeOptions, RenderOptions, CompareOptions, DevicesOptions,
+                             SchemaOptions, HealthOptions>;
 
 /// Reads the command line, HELIOGRAPH_* variables and the file of --config, in this order of
 /// precedence. Help is printed to stdout, errors to stderr with the nearest known name.

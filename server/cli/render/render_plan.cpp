@@ -37,6 +37,17 @@ glm::mat3 rotation_of(double turns) {
   return glm::mat3(glm::rotate(glm::mat4(1.0f), angle, glm::vec3(0.0f, 1.0f, 0.0f)));
 }
 
+/// The first of them: "front, side or 30 more".
+std::string listed(const std::vector<std::string_view>& names) {
+  constexpr std::size_t most = 8;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
+    text += (i == 0 ? "" : ", ") + std::string(names[i]);
+  }
+  if (names.size() > most) text += " or " + std::to_string(names.size() - most) + " more";
+  return text;
+}
+
 scene::Camera camera_of(const protocol::RenderView& view) {
   const auto vector = [](const std::array<float, 3>& v) { return glm::vec3(v[0], v[1], v[2]); };
   scene::Camera camera;
@@ -75,11 +86,10 @@ std::vector<scene::Camera> named_cameras(const scene::Scene& scene,
   if (request.camera == all_cameras && !scene.cameras.empty()) return scene.cameras;
   if (!request.camera.empty() && request.camera != all_cameras) {
     if (const scene::Camera* camera = scene::find_camera(scene, request.camera)) return {*camera};
-    const std::string many = std::to_string(scene.cameras.size());
-    const std::string what =
-        scene.cameras.empty() ? "no cameras" : "no camera " + request.camera + " among its " + many;
-    throw std::runtime_error("--camera: the scene has " + what +
-                             protocol::suggestion(request.camera, names_of(scene.cameras)));
+    if (scene.cameras.empty()) throw std::runtime_error("--camera: the scene has no cameras");
+    throw std::runtime_error("--camera: the scene has no camera " + request.camera +
+                             protocol::suggestion(request.camera, names_of(scene.cameras)) + " (" +
+                             listed(names_of(scene.cameras)) + ")");
   }
   if (!scene.cameras.empty()) return {scene.cameras.front()};
   return {};

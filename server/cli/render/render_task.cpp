@@ -138,7 +138,7 @@ void check_combination(const protocol::RenderRequest& request, bool timings) {
   if (request.quality && request.buffer != "output") {
     throw std::invalid_argument("--quality: is that of the output, not of " + request.buffer);
   }
-  const auto named = render::check_buffer_name(request.buffer, "--buffer");
+  const auto named = render::check_buffer_name(request.buffer, "--buffer " + request.buffer);
   if (!named) throw std::invalid_argument(named.error().message);
 }
 
