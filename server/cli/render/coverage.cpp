@@ -12,7 +12,8 @@
 namespace heliograph::cli {
 namespace {
 
-void accept_coverage(const protocol::Result<void>& result) {
+template <class Value>
+void accept_coverage(const protocol::Result<Value>& result) {
   if (!result) throw std::runtime_error("--background: " + result.error().message);
 }
 

@@ -142,6 +142,7 @@ class ImageEnd {
 
   bool reached(const render::Frame& frame) {
     if (frame.converged || frame.samples >= request_.samples.value_or(most_samples)) return true;
+    if (!request_.samples && session::is_complete_at_once(request_.buffer)) return true;
     if (request_.time_limit && Clock::now() - begin_ >= Seconds(*request_.time_limit)) return true;
     if (!request_.quality || !estimate_.wants(frame.samples)) return false;
     const auto similarity = estimate_.add(frame.rgba, frame.width, frame.samples);
