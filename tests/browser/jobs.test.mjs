@@ -6,7 +6,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after } from "node:test";
 import { seriousFindings } from "./harness/axe.mjs";
-import { chooseOutput, eventually, screenshot } from "./harness/browser.mjs";
+import { eventually, screenshot } from "./harness/browser.mjs";
 import { outputFolder } from "./harness/environment.mjs";
 import { Stage } from "./harness/stage.mjs";
 
