@@ -12,7 +12,7 @@ import { Stage } from "./harness/stage.mjs";
 
 const permissions = ["clipboard-read", "clipboard-write"];
 const view = { viewport: { width: 720, height: 405 } };
-const stage = new Stage({ view });
+const stage = new Stage({ view, resolution: "auto" });
 
 async function openSave(page, { format = "png", samples = "converged" } = {}) {
   await chooseOutput(page, "Save image");
@@ -103,10 +103,10 @@ stage.test("an image is saved in another size, with linked sides and progress", 
   const [width, height] = ["Width", "Height"].map((name) =>
     dialog.getByRole("textbox", { name }),
   );
-  assert.deepEqual([await width.inputValue(), await height.inputValue()], ["360", "203"]);
+  assert.deepEqual([await width.inputValue(), await height.inputValue()], ["720", "405"]);
   await width.fill("1440");
   await width.press("Tab");
-  assert.equal(await height.inputValue(), "812");
+  assert.equal(await height.inputValue(), "810");
   await dialog.getByRole("button", { name: "Keep the aspect ratio" }).click();
   await height.fill("99999");
   await height.press("Tab");
