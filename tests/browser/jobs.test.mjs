@@ -63,7 +63,7 @@ stage.test("a view is rendered as a job, whose files the page of jobs shows", as
   await image.waitFor();
   await eventually(() => image.evaluate((node) => node.naturalWidth === 96), "the image is shown");
   const download = jobs.waitForEvent("download");
-  await job.getByRole("link", { name: /as a ZIP archive/ }).click();
+  await job.getByRole("link", { name: /^Download ZIP of/ }).click();
   const file = await download;
   assert.equal(file.suggestedFilename(), "shadow_objects__96___54.zip");
   const path = join(outputFolder, "job.zip");
@@ -90,7 +90,7 @@ stage.test("jobs are shown as they run, and can be cancelled from the keyboard",
   await card(page, "urgent").getByText("Canceled", { exact: true }).waitFor();
   await running.getByRole("button", { name: "Cancel endless" }).press("Enter");
   await running.getByText("Canceled", { exact: true }).waitFor({ timeout: 20_000 });
-  await running.getByRole("link", { name: /as a ZIP archive/ }).waitFor();
+  await running.getByRole("link", { name: /^Download ZIP of/ }).waitFor();
   await card(page, "next").getByText("Done", { exact: true }).waitFor({ timeout: 30_000 });
 });
 
