@@ -57,7 +57,7 @@ stage.test("a view is rendered as a job, whose files the page of jobs shows", as
   const opened = page.context().waitForEvent("page");
   await dialog.getByRole("link", { name: "Show the jobs" }).click();
   const jobs = await opened;
-  const job = card(jobs, "shadow_objects, 96 × 54");
+  const job = card(jobs, "shadow_objects, 96 x 54");
   await job.getByText("Done", { exact: true }).waitFor({ timeout: 60_000 });
   const image = job.locator("img");
   await image.waitFor();
@@ -65,7 +65,7 @@ stage.test("a view is rendered as a job, whose files the page of jobs shows", as
   const download = jobs.waitForEvent("download");
   await job.getByRole("link", { name: /^Download ZIP of/ }).click();
   const file = await download;
-  assert.equal(file.suggestedFilename(), "shadow_objects__96___54.zip");
+  assert.equal(file.suggestedFilename(), "shadow_objects__96_x_54.zip");
   const path = join(outputFolder, "job.zip");
   await file.saveAs(path);
   const archive = readFileSync(path);
