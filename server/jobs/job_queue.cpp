@@ -60,6 +60,7 @@ JobQueue::JobQueue(QueueOptions options)
     : options_(std::move(options)), store_(prepared(options_.folder)) {
   const double time = now();
   store_.recover(most_attempts, time, time + options_.keep_seconds);
+  for (const auto& [id, name] : store_.files_without_checksum()) keep_file(id, name);
 }
 
 JobQueue::~JobQueue() {
@@ -164,12 +165,21 @@ Result<JobInfo> JobQueue::cancel(const std::string& id) {
   return job;
 }
 
-Result<fs::path> JobQueue::file(const std::string& id, const std::string& name) {
+Result<StoredFile> JobQueue::file(const std::string& id, const std::string& name) {
   const std::lock_guard lock(mutex_);
-  // Only names that are in the database are looked for on disk.
-  if (store_.file_bytes(id, name)) return folder_of(id) / "files" / name;
+  if (auto file = store_.file(id, name)) return *std::move(file);
   if (!store_.find(id)) return no_such_job(id);
   return protocol::error::not_found("name", "the job has no such file");
+}
+
+Result<std::vector<StoredFile>> JobQueue::files(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  if (!store_.find(id)) return no_such_job(id);
+  return store_.files(id);
+}
+
+fs::path JobQueue::path_of(const std::string& id, const StoredFile& file) const {
+  return folder_of(id) / "files" / file.name;
 }
 
 fs::path JobQueue::folder_of(const std::string& id) const {

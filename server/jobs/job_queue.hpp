@@ -68,7 +68,11 @@ class JobQueue {
   protocol::Result<protocol::JobInfo> status(const std::string& id);
   protocol::Result<protocol::JobInfo> cancel(const std::string& id);
   /// A complete file of a job.
-  protocol::Result<std::filesystem::path> file(const std::string& id, const std::string& name);
+  protocol::Result<StoredFile> file(const std::string& id, const std::string& name);
+  /// The complete files of a job.
+  protocol::Result<std::vector<StoredFile>> files(const std::string& id);
+  /// Where it is.
+  std::filesystem::path path_of(const std::string& id, const StoredFile& file) const;
 
  private:
   protocol::Result<void> check(const protocol::JobCreate& request) const;

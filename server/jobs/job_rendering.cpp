@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "jobs/checksum.hpp"
 #include "jobs/job_queue.hpp"
 #include "protocol/json/codec.hpp"
 
@@ -187,11 +188,13 @@ void JobQueue::take_event(const BegunJob& job, const std::string& line, JobEnd& 
 }
 
 void JobQueue::keep_file(const std::string& id, const std::string& name) {
+  const fs::path file = folder_of(id) / "files" / name;
   std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(folder_of(id) / "files" / name, error);
-  if (error) return;
+  const std::uintmax_t bytes = fs::file_size(file, error);
+  const auto crc = crc32_of(file);
+  if (error || !crc) return;
   const std::lock_guard lock(mutex_);
-  store_.add_file(id, name, bytes);
+  store_.add_file(id, {.name = name, .bytes = bytes, .crc = *crc});
 }
 
 }  // namespace heliograph::jobs

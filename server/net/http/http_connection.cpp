@@ -388,7 +388,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   }
 
   void send(HttpResponse answer) {
-    if (!answer.file.empty() && !framing_.head_only) return send_file(answer);
+    if (answer.content && !framing_.head_only) return send_content(std::move(answer));
     if (!outgoing_.has_room(answer.body.size())) {
       answer = retry_later("Too many responses wait to be read by other clients.");
     }
@@ -401,13 +401,12 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
                 [self = shared_from_this()](error_code error) { self->sent(error); });
   }
 
-  void send_file(const HttpResponse& answer) {
-    file_ = to_file_message(context_, answer, framing_);
-    if (!file_) return send(text_response(404, "The file is gone."));
-    file_serializer_.emplace(*file_);
+  void send_content(HttpResponse answer) {
+    download_ = to_download(context_, std::move(answer), framing_);
+    download_serializer_.emplace(*download_);
     const PaceKeeper keeper({.timeout = idle_timeout, .bytes_per_second = min_bytes_per_second},
                             PaceKeeper::Clock::now());
-    write_paced(stream_, *file_serializer_, keeper,
+    write_paced(stream_, *download_serializer_, keeper,
                 [self = shared_from_this()](error_code error) { self->sent(error); });
   }
 
@@ -415,8 +414,8 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     answering_ = false;
     serializer_.reset();
     response_ = {};
-    file_serializer_.reset();
-    file_.reset();
+    download_serializer_.reset();
+    download_.reset();
     outgoing_.hold(0);
     if (error) return;
     if (!framing_.keep_alive || shutting_down_) return close();
@@ -459,8 +458,8 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   OutgoingBytes outgoing_{context_.outgoing_bytes};
   BeastResponse response_;
   std::optional<http::response_serializer<http::string_body>> serializer_;
-  std::optional<BeastFile> file_;
-  std::optional<http::response_serializer<http::file_body>> file_serializer_;
+  std::optional<BeastDownload> download_;
+  std::optional<http::response_serializer<ContentBody>> download_serializer_;
   RateLimit calls_;
   bool first_ = true;
   bool answering_ = false;

@@ -140,7 +140,8 @@ bool FrameReaders::is_ready(const PendingCapture& capture, const ReadableFrame& 
   if (newest.width != state.width || newest.height != state.height) return false;
   if (state.animation.playing || !frame.renderer.needs_frame()) return true;
   const std::optional<std::uint32_t>& samples = capture.request.samples;
-  return samples && newest.samples >= *samples;
+  if (!samples) return is_complete_at_once(capture.request.buffer);
+  return newest.samples >= *samples;
 }
 
 /// False if too many files are being written already.

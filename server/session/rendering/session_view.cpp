@@ -207,8 +207,9 @@ bool SessionView::moves() const {
 /// A GPU has to copy it, which takes as long as a fast frame; and frames that come this often need
 /// nothing between them.
 bool SessionView::depth_pays() const {
-  return engine_.device().type == protocol::DeviceType::cpu ||
-         full_frame_time_ == Clock::duration::zero() || full_frame_time_ >= frame_time_for_depth;
+  if (full_frame_time_ == Clock::duration::zero()) return true;
+  return full_frame_time_ >= frame_time_for_depth ||
+         engine_.device().type == protocol::DeviceType::cpu;
 }
 
 bool SessionView::is_full_size() const {
