@@ -195,6 +195,7 @@ bool JobQueue::wait(std::condition_variable& event, double seconds) {
 void JobQueue::run() {
   while (true) {
     try {
+      record_end();
       expire();
       std::optional<BegunJob> job;
       {
@@ -225,13 +226,17 @@ void JobQueue::expire() {
   for (const std::string& id : expired) fs::remove_all(folder_of(id), ignored);
 }
 
-void JobQueue::finish(const std::string& id, const JobEnd& end) {
+/// Where it throws, as while the disk is full, the end is recorded later.
+void JobQueue::record_end() {
+  if (!unrecorded_) return;
+  const std::string id = unrecorded_->first;
   {
     const std::lock_guard lock(mutex_);
     const double time = now();
-    store_.end(id, end, time, time + options_.keep_seconds);
+    store_.end(id, unrecorded_->second, time, time + options_.keep_seconds);
     to_cancel_.erase(id);
   }
+  unrecorded_.reset();
   webhook_event_.notify_all();
   announce(id);
 }

@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "jobs/job_store.hpp"
@@ -85,11 +87,12 @@ class JobQueue {
   void take_event(const BegunJob& job, const std::string& line, JobEnd& end);
   void keep_file(const std::string& id, const std::string& name);
   std::string why_to_stop(const std::string& id);
-  void finish(const std::string& id, const JobEnd& end);
+  void record_end();
   void announce(const std::string& id);
   std::filesystem::path folder_of(const std::string& id) const;
 
   const QueueOptions options_;
+  std::optional<std::pair<std::string, JobEnd>> unrecorded_;  // of the queue's thread
   std::function<void(const protocol::JobInfo&)> listener_;
   std::mutex mutex_;  // guards what follows
   JobStore store_;

@@ -123,11 +123,12 @@ void JobQueue::render(const BegunJob& job) {
   } catch (const fs::filesystem_error& failure) {
     end = {.state = JobState::failed,
            .failures = {{.entry = 0, .scene = {}, .reason = failure.code().message()}}};
-  } catch (const std::runtime_error& failure) {
+  } catch (const std::exception& failure) {
     end = {.state = JobState::failed,
            .failures = {{.entry = 0, .scene = {}, .reason = failure.what()}}};
   }
-  finish(job.id, end);
+  unrecorded_ = {job.id, std::move(end)};
+  record_end();
 }
 
 /// Empty: go on.

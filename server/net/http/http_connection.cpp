@@ -1,6 +1,7 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
+#include <cerrno>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "net/websocket/paced_write.hpp"
 #include "net/websocket/upgrade_refusal.hpp"
 #include "protocol/messages/messages.hpp"
+#include "session/event_log.hpp"
 
 namespace heliograph::net {
 namespace {
@@ -57,6 +59,13 @@ HttpResponse upload_response(const session::UploadedFile& file) {
   HttpResponse response = json_response(described.dump());
   response.status = 201;
   return response;
+}
+
+/// Of the file that an upload is written to; all others are the connection's.
+bool is_of_disk(error_code error) {
+  return error == boost::system::errc::no_space_on_device ||
+         error == boost::system::errc::io_error ||
+         error == error_code(EDQUOT, asio::error::get_system_category());
 }
 
 class HttpConnection : public Connection, public std::enable_shared_from_this<HttpConnection> {
@@ -240,6 +249,11 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 
   void received_upload(error_code error) {
     const bool late = std::chrono::steady_clock::now() > upload_deadline_;
+    if (is_of_disk(error)) {
+      session::log_error({}, "an upload could not be written: " + error.message());
+      upload_.reset();
+      return send(error_response(protocol::error::full("the server's disk is full or has failed")));
+    }
     if (error || late) return upload_.reset();
     if (!upload_parser_->is_done()) return receive_upload();
     upload_parser_->get().body().close();
@@ -260,13 +274,28 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
       framing_.keep_alive = false;
       return send(text_response(413, "The request is too large."));
     }
-    if (!error) return answer();
+    if (!error) return answer_or_close();
     if (error == http::error::end_of_stream) return close();
     if (error.category() == http::make_error_code(http::error::bad_method).category()) {
       framing_.keep_alive = false;
       return send(text_response(400, "This is not an HTTP request."));
     }
     // Timed out or disconnected: no response can be sent.
+  }
+
+  /// Where there is no memory for the answer, the client may try again.
+  void answer_or_close() {
+    try {
+      answer();
+    } catch (const std::bad_alloc&) {
+      give_up();
+      throw;
+    }
+  }
+
+  void give_up() {
+    presence_timer_.cancel();
+    if (stream_.has_socket()) stream_.next_layer().close();
   }
 
   void answer() {
@@ -295,12 +324,22 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     watch_client(pending);
     context_.router.handle(request, pending,
                            [self = shared_from_this(), pending](HttpResponse response) {
-                             run_later(self->stream_.get_executor(),
-                                       [self, pending, response = std::move(response)]() mutable {
-                                         self->presence_timer_.cancel();
-                                         self->send(std::move(response));
-                                       });
+                             self->send_later(std::move(response), pending);
                            });
+  }
+
+  /// From any thread.
+  void send_later(HttpResponse response, const std::shared_ptr<protocol::PendingAnswer>& pending) {
+    try {
+      run_later(stream_.get_executor(),
+                [self = shared_from_this(), pending, response = std::move(response)]() mutable {
+                  self->presence_timer_.cancel();
+                  self->send(std::move(response));
+                });
+    } catch (const std::bad_alloc&) {
+      pending->abandon();  // watch_client() closes the connection
+      throw;
+    }
   }
 
   /// Gives the answer up once the client has closed the connection: its frames would be rendered in
@@ -310,6 +349,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     on_expiry(presence_timer_,
               [self = shared_from_this(), answer = std::move(answer)](error_code error) mutable {
                 if (error) return;
+                if (answer->abandoned()) return self->give_up();
                 if (peer_has_closed(self->stream_.next_layer().socket().native_handle())) {
                   return answer->abandon();
                 }
