@@ -63,6 +63,7 @@ enum class Call {
   query,       ///< changes nothing; allowed for all callers
   personal,    ///< changes something for its caller only; allowed for all callers
   command,     ///< changes the session for all its viewers; needs control of it
+  movement,    ///< moves the camera: a command, but for viewers that have a camera of their own
   management,  ///< about sessions; needs a control token, but not control of the session
 };
 
@@ -84,7 +85,7 @@ struct MethodDescriptor {
   /// send.
   bool may_be_notification() const { return call != Call::query; }
   /// Whether it changes what the viewers of a session share.
-  bool needs_control() const { return call == Call::command; }
+  bool needs_control() const { return call == Call::command || call == Call::movement; }
   /// Whether read-only viewers may call it.
   bool read_only() const { return call == Call::query || call == Call::personal; }
 };

@@ -37,6 +37,9 @@ using Handler = std::function<void(Request, const CallContext&, Completion<Respo
 /// The result of a call with the member `warnings`, if there are any.
 RawJson with_warnings(RawJson result, const std::vector<std::string>& warnings);
 
+/// The error for callers whose token does not allow control.
+Error read_only_token();
+
 /// The response text of an error; `id` is null where the id of the call could not be read.
 std::string error_answer(const RawJson& id, const Error& error);
 

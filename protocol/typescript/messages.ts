@@ -132,6 +132,10 @@ export interface ViewerInfo {
 export interface SessionInfo {
   /** Whether all viewers have control (shared) or one viewer (exclusive). */
   control: "shared" | "exclusive";
+  /**
+   * The session whose scene and settings it shows with a camera of its own; absent: it has its own.
+   */
+  follows?: string;
   /** Frame height. [pixels] */
   height: number;
   /** Time since the session last had a viewer, a call or a frame to render. [seconds] */
@@ -1141,6 +1145,12 @@ export interface Methods {
   "session.create": { params: SessionCreateParams; result: SessionInfo };
   /** Moves this viewer and its stream to another session. */
   "session.join": { params: SessionJoinParams; result: SessionJoinResult };
+  /**
+   * Gives this viewer a camera of its own: moves it to a new session that follows this one in
+   * everything but the camera and the frame size, and ends when the viewer leaves it. Only its
+   * camera can be changed there, also with a view token; session.join leads back.
+   */
+  "session.detach": { params: Empty; result: SessionJoinResult };
   /** Lists the sessions and their limits. */
   "session.list": { params: Empty; result: SessionList };
   /** Describes this session: its viewers and which of them have control. */

@@ -174,6 +174,7 @@ int run(const ServeOptions& options) {
   const std::unique_ptr<session::UploadStore> uploads = upload_store(options);
   if (uploads) {
     hosting.scene_roots.push_back(uploads->scenes());
+    hosting.environment_roots.push_back(uploads->environments());
     hosting.max_upload_bytes = uploads->max_bytes();
   }
   const std::optional<std::string> scene =
@@ -191,7 +192,10 @@ int run(const ServeOptions& options) {
   const std::unique_ptr<jobs::JobQueue> job_queue = make_job_queue(options, hosting);
   hosting.jobs = job_queue.get();
   session::SessionHost host(engine, hosting);
-  if (uploads) serving.router.uploads = uploads->scenes();
+  if (uploads) {
+    serving.router.uploads = uploads->scenes();
+    serving.router.uploaded_environments = uploads->environments();
+  }
   net::Server server(host, serving, uploads.get());
 
   host.on_first_frame([url = server.url(), metrics = server.metrics_url()] {

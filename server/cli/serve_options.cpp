@@ -163,17 +163,17 @@ void add_scene_options(CLI::App& command, ServeOptions& options) {
   add_environment_option(command, options.environment);
   command
       .add_option("--uploads", options.uploads,
-                  "Folder for scenes that clients upload with PUT /api/v1/scenes/NAME [no uploads]")
+                  "Folder for scenes and environments that clients upload with PUT "
+                  "/api/v1/scenes/NAME and /api/v1/environments/NAME [no uploads]")
       ->type_name("FOLDER")
       ->group(group);
   command
       .add_option("--max-upload-bytes", options.max_upload_bytes,
-                  "Maximum bytes of an uploaded scene")
+                  "Maximum bytes of an uploaded file")
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->group(group);
-  command
-      .add_option("--upload-quota", options.upload_quota, "Maximum bytes of all uploaded scenes")
+  command.add_option("--upload-quota", options.upload_quota, "Maximum bytes of all uploaded files")
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->group(group);

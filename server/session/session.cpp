@@ -56,7 +56,9 @@ protocol::SessionInfo Session::info_locked() const {
                              .viewers = {},
                              .control = core_.viewers.control_mode(),
                              .rev = core_.rev,
-                             .idle_seconds = std::chrono::duration<double>(idle()).count()};
+                             .idle_seconds = std::chrono::duration<double>(idle()).count(),
+                             .follows = std::nullopt};
+  if (!follows().empty()) info.follows = follows();
   if (core_.scene) info.scene = core_.scene_info.name;
   return info;
 }
@@ -104,6 +106,19 @@ void Session::copy_from(const Session& other) {
   core_.changed();
 }
 
+void Session::follow(const std::shared_ptr<Session>& follower, Session& leader) {
+  follower->set_buffers(leader.buffers());
+  const std::lock_guard lock(leader.core_.mutex);
+  follower->core_.follow(leader.core_);
+  {
+    const std::lock_guard own_lock(follower->core_.mutex);
+    follower->core_.camera.copy_from(leader.core_.camera);
+  }
+  auto& followers = leader.core_.followers;
+  std::erase_if(followers, [](const auto& weak) { return weak.expired(); });
+  followers.emplace_back(std::shared_ptr<SessionCore>(follower, &follower->core_));
+}
+
 void Session::set_buffers(std::vector<protocol::BufferInfo> buffers) {
   const std::lock_guard lock(core_.mutex);
   buffers_ = std::move(buffers);
@@ -133,13 +148,14 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
                         std::min(request.height.value_or(core_.height), limits.max_height)};
   const bool sized = request.width || request.height;
   const bool other = asked != FrameSize{core_.width, core_.height};
-  if (other && read_only) {
+  const bool may_ask = may_resize(by, read_only);
+  if (other && read_only && !may_ask) {
     return error::make(protocol::ErrorCode::forbidden,
                        asked.width != core_.width ? "width" : "height",
                        "is shared by all viewers and cannot be changed with a read-only token");
   }
-  if (other && !core_.viewers.may_change(by)) return no_control(core_.viewers);
-  const bool wants = sized && !by.empty() && !read_only && core_.viewers.may_change(by);
+  if (other && !may_ask) return no_control(core_.viewers);
+  const bool wants = sized && !by.empty() && may_ask;
   const FrameSize size = wants ? size_for(core_.viewers.wanted_sizes(by), asked) : asked;
   // More pixels are reserved before anything changes; fewer are released after it.
   const auto pixels_before = static_cast<std::uint64_t>(core_.width) * core_.height;
@@ -163,6 +179,11 @@ Result<protocol::StreamState> Session::configure_stream(const protocol::StreamCo
                                .codec = stream->codec,
                                .still = stream->still,
                                .depth = stream->depth};
+}
+
+/// The size of a view of one's own is one's own.
+bool Session::may_resize(const std::string& by, bool read_only) const {
+  return !follows().empty() || (!read_only && core_.viewers.may_change(by));
 }
 
 FrameSize Session::size_for(std::vector<FrameSize> wanted, std::optional<FrameSize> more) const {

@@ -38,6 +38,8 @@ class Session {
   const std::string& name() const { return core_.options.name; }
   const SessionLimits& limits() const { return core_.options.limits; }
   bool starts_empty() const { return core_.options.starts_empty; }
+  /// The session that it follows with a camera of its own; empty: none.
+  const std::string& follows() const { return core_.options.follows; }
   std::uint32_t rev() const;
   /// The session as `viewer` sees it.
   protocol::SessionInfo info(const std::string& viewer) const;
@@ -51,6 +53,7 @@ class Session {
   SessionCaptures& captures() { return captures_; }
   SessionReference& reference() { return reference_; }
   ViewerSet& viewers() { return core_.viewers; }
+  const ViewerSet& viewers() const { return core_.viewers; }
 
   protocol::SettingsState settings() const;
   protocol::Result<protocol::SettingsApplied> patch_settings(const protocol::RawJson& patch,
@@ -69,6 +72,8 @@ class Session {
 
   /// Begins with the scene, camera, clip and settings of another session.
   void copy_from(const Session& other);
+  /// Follows the session that `follows` names from now on, beginning with its camera.
+  static void follow(const std::shared_ptr<Session>& follower, Session& leader);
   /// The session is removed from the registry, though it may still be referenced.
   void end();
   bool ended() const { return ended_; }
@@ -100,6 +105,7 @@ class Session {
                                                   const std::string& by);
   /// For viewers that want these sizes, and perhaps one more.
   FrameSize size_for(std::vector<FrameSize> wanted, std::optional<FrameSize> more = {}) const;
+  bool may_resize(const std::string& by, bool read_only) const;
   void resize(FrameSize size);
   void restore_size();
   /// What belongs to a viewer that is gone.

@@ -24,6 +24,30 @@ protocol::Error renamed(const protocol::Error& part, std::string_view path, std:
   return protocol::error::make(part.code, std::move(name), part.reason, part.limit);
 }
 
+using Paths = std::vector<std::filesystem::path>;
+
+Paths with(Paths paths, const Paths& more) {
+  paths.insert(paths.end(), more.begin(), more.end());
+  return paths;
+}
+
+/// Whether the caller has control of what the method changes: of the session, or of its camera
+/// where that is the viewer's own.
+Result<void> may_change(const Session& session, const protocol::MethodDescriptor& method,
+                        const protocol::CallContext& call) {
+  const bool own_view = !session.follows().empty() && !call.viewer.empty();
+  const bool moves = method.call == protocol::Call::movement;
+  if (own_view && moves) return {};
+  if (call.view_only) return protocol::read_only_token();
+  if (!session.follows().empty() && !moves) {
+    return protocol::error::make(
+        protocol::ErrorCode::forbidden, "session",
+        "follows the session " + session.follows() + "; only its camera can be changed");
+  }
+  if (!session.viewers().may_change(call.viewer)) return no_control(session.viewers());
+  return {};
+}
+
 }  // namespace
 
 SessionHost::SessionHost(render::Engine& engine, HostOptions options)
@@ -42,7 +66,8 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
               {.environment = options_.environment,
                .limits = options_.import_limits,
                .cache_bytes = options_.scene_cache_bytes}),
-      environments_(engine, catalogue_) {
+      environments_(engine,
+                    SceneCatalogue(with(options_.scene_roots, options_.environment_roots))) {
   loader_.on_device_loss([this] { render_loop_.report_device_loss(); });
   environments_.on_device_loss([this] { render_loop_.report_device_loss(); });
   render_loop_.on_new_device([this] { loader_.take_new_device(); });
@@ -63,10 +88,9 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
     const auto session = sessions_.session_of(call);
     if (!session) return session.error();
     (*session)->mark_used();
-    if (method.needs_control() && !(*session)->viewers().may_change(call.viewer)) {
-      return no_control((*session)->viewers());
-    }
-    if (method.needs_control()) (*session)->mark_modified();
+    if (!method.needs_control()) return {};
+    if (const auto may = may_change(**session, method, call); !may) return may;
+    (*session)->mark_modified();
     return {};
   });
   dispatcher_.on_handler_failure([](std::string_view method, std::string_view reason) {
@@ -145,6 +169,16 @@ void SessionHost::create_session(const protocol::SessionCreate& request, const s
                if (loaded) return done(session);
                fail_creation(session, renamed(loaded.error(), "name", "scene"), done);
              });
+}
+
+Result<std::shared_ptr<Session>> SessionHost::detach(const std::string& viewer) {
+  const std::shared_ptr<Session> leader = sessions_.session_of_viewer(viewer);
+  if (!leader) return protocol::error::not_ready("requires a WebSocket connection");
+  const protocol::SessionInfo info = leader->info({});
+  SessionOptions options = options_.session;
+  options.width = info.width;
+  options.height = info.height;
+  return sessions_.detach(viewer, std::move(options));
 }
 
 Result<Resumed> SessionHost::resume(const std::string& viewer, const Origin& from, bool read_only) {

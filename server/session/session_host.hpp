@@ -27,7 +27,8 @@ struct HostOptions {
   SessionOptions session;  // the main one, and what others start with
   RegistryLimits limits;
   std::vector<std::filesystem::path> scene_roots;
-  std::optional<std::filesystem::path> environment;  // for every scene, instead of its own
+  std::vector<std::filesystem::path> environment_roots;  // beside them
+  std::optional<std::filesystem::path> environment;      // for every scene, instead of its own
   scene::ImportLimits import_limits;
   std::uint64_t scene_cache_bytes = 1ull << 30;
   protocol::DispatchLimits dispatch;
@@ -63,6 +64,8 @@ class SessionHost {
   /// session is closed.
   using Created = std::function<void(protocol::Result<std::shared_ptr<Session>>)>;
   void create_session(const protocol::SessionCreate& request, const std::string& by, Created done);
+  /// Gives a viewer a camera of its own; see SessionRegistry::detach.
+  protocol::Result<std::shared_ptr<Session>> detach(const std::string& viewer);
   /// Finds a session for a viewer of an earlier server run; see SessionRegistry::resume.
   protocol::Result<Resumed> resume(const std::string& viewer, const Origin& from, bool read_only);
   void load_scene(std::shared_ptr<Session> session, const protocol::SceneLoad& request,

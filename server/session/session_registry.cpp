@@ -23,6 +23,10 @@ bool is_name(std::string_view name) {
          std::all_of(name.begin(), name.end(), plain);
 }
 
+protocol::Error belongs_to_viewer() {
+  return error::not_found("session", "is the view of one viewer");
+}
+
 }  // namespace
 
 SessionRegistry::SessionRegistry(const RegistryLimits& limits, SessionOptions main, Open open,
@@ -87,6 +91,10 @@ Clock::duration SessionRegistry::close_idle() {
   Clock::duration next = std::chrono::hours(1);
   std::vector<std::shared_ptr<Session>> idle;
   for (const auto& [name, session] : sessions_) {
+    const auto leader = sessions_.find(session->follows());
+    if (leader != sessions_.end()) leader->second->mark_used();
+  }
+  for (const auto& [name, session] : sessions_) {
     const Clock::duration timeout = idle_timeout_of(*session);
     if (session == main_ || timeout == Clock::duration::zero()) continue;
     const Clock::duration left = timeout - session->idle();
@@ -96,7 +104,9 @@ Clock::duration SessionRegistry::close_idle() {
       next = std::min(next, left);
     }
   }
-  for (const auto& session : idle) end(session, "the session was idle");
+  for (const auto& session : idle) {
+    if (!session->ended()) end(session, "the session was idle");
+  }
   return next;
 }
 
@@ -110,6 +120,7 @@ std::chrono::seconds SessionRegistry::idle_timeout_of(const Session& session) co
 
 void SessionRegistry::end(const std::shared_ptr<Session>& session, const std::string& reason) {
   const std::string& name = session->name();
+  for (const auto& follower : followers_of(*session)) end(follower, reason);
   sessions_.erase(name);
   origins_.erase(name);
   const protocol::SessionClosed closed{.session = name, .reason = reason};
@@ -163,6 +174,7 @@ Result<std::string> SessionRegistry::enter(const std::string& session,
   const std::lock_guard lock(mutex_);
   const Result<std::shared_ptr<Session>> found = find_locked(session);
   if (!found) return found.error();
+  if (!(*found)->follows().empty()) return belongs_to_viewer();
   if (session_of_viewer_.size() >= limits_.viewers) {
     return error::full("the server's maximum number of viewers is reached",
                        std::to_string(limits_.viewers) + " viewers");
@@ -189,11 +201,50 @@ Result<std::shared_ptr<Session>> SessionRegistry::move_locked(const std::string&
   }
   const Result<std::shared_ptr<Session>> there = find_locked(session);
   if (!there || *there == here->second) return there;
+  if (!(*there)->follows().empty() && !(*there)->viewers().empty()) return belongs_to_viewer();
   if (const auto moved = here->second->move_to(viewer, **there); !moved) return moved.error();
   const std::shared_ptr<Session> before = std::exchange(here->second, *there);
   before->announce();
   (*there)->announce();
+  end_if_left(before);
   return there;
+}
+
+Result<std::shared_ptr<Session>> SessionRegistry::detach(const std::string& viewer,
+                                                         SessionOptions options) {
+  const std::lock_guard lock(mutex_);
+  const auto here = session_of_viewer_.find(viewer);
+  if (here == session_of_viewer_.end()) return error::not_ready("requires a WebSocket connection");
+  const std::shared_ptr<Session> leader = here->second;
+  if (!leader->follows().empty()) {
+    return error::conflict("session", "this viewer has a camera of its own already");
+  }
+  if (followers_of(*leader).size() >= limits_.followers) {
+    return error::full("too many viewers have cameras of their own in this session",
+                       std::to_string(limits_.followers) + " viewers");
+  }
+  options.name.clear();
+  options.follows = leader->name();
+  const Result<std::shared_ptr<Session>> created = create_locked(std::move(options));
+  if (!created) return created;
+  Session::follow(*created, *leader);
+  const auto moved = move_locked(viewer, (*created)->name());
+  if (!moved) end(*created, "its viewer stayed where it was");
+  return moved;
+}
+
+std::vector<std::shared_ptr<Session>> SessionRegistry::followers_of(const Session& leader) const {
+  std::vector<std::shared_ptr<Session>> followers;
+  for (const auto& [name, session] : sessions_) {
+    if (session->follows() == leader.name()) followers.push_back(session);
+  }
+  return followers;
+}
+
+/// A session for one viewer's camera is of no use without it.
+void SessionRegistry::end_if_left(const std::shared_ptr<Session>& session) {
+  if (session->follows().empty() || session->ended() || !session->viewers().empty()) return;
+  end(session, "its viewer has left");
 }
 
 Result<Resumed> SessionRegistry::resume(const std::string& viewer, const Origin& from,
@@ -237,9 +288,11 @@ void SessionRegistry::leave(const std::string& viewer) {
   const std::lock_guard lock(mutex_);
   const auto found = session_of_viewer_.find(viewer);
   if (found == session_of_viewer_.end()) return;
-  found->second->leave(viewer);
-  found->second->announce();
+  const std::shared_ptr<Session> session = found->second;
+  session->leave(viewer);
+  session->announce();
   session_of_viewer_.erase(found);
+  end_if_left(session);
 }
 
 std::size_t SessionRegistry::count() const {

@@ -23,6 +23,7 @@ struct RegistryLimits {
   std::size_t sessions = 64;
   std::size_t viewers = 256;
   std::uint64_t pixels = 8ull * 3840 * 2160;
+  std::size_t followers = 8;  // of one session, each for a viewer with a camera of its own
   /// A session other than main is closed after so long without viewers and calls; zero: never.
   std::chrono::seconds idle_timeout{600};
 };
@@ -74,6 +75,10 @@ class SessionRegistry {
   /// Moves a viewer to another session, with its stream as it is.
   protocol::Result<std::shared_ptr<Session>> move(const std::string& viewer,
                                                   const std::string& session);
+  /// Moves a viewer to a new session, made with `options`, that follows its session with a camera
+  /// of its own. It ends when the viewer leaves it or its leader ends.
+  protocol::Result<std::shared_ptr<Session>> detach(const std::string& viewer,
+                                                    SessionOptions options);
   /// Moves a viewer that was in a session of another server run to where it disturbs no other
   /// viewer: to the session of those that were there with it; else to the session of that name
   /// while it is pristine; else to a new one, of that name if it is free, made with `options`.
@@ -95,6 +100,8 @@ class SessionRegistry {
   protocol::Result<std::shared_ptr<Session>> create_locked(SessionOptions options);
   protocol::Result<std::shared_ptr<Session>> move_locked(const std::string& viewer,
                                                          const std::string& session);
+  std::vector<std::shared_ptr<Session>> followers_of(const Session& leader) const;
+  void end_if_left(const std::shared_ptr<Session>& session);
   bool is_available(const std::string& viewer, const std::string& name) const;
   std::string resumed_name(const Origin& from);
   protocol::Result<std::shared_ptr<Session>> find_locked(std::string_view name) const;

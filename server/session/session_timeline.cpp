@@ -144,6 +144,7 @@ void SessionTimeline::end_step(const StepFrame& frame, std::uint32_t samples) {
   {
     const std::lock_guard lock(core_.mutex);
     done = core_.timeline.end_step(frame, samples);
+    core_.lead();
     state = core_.timeline.step_state(frame.state.lockstep, frame.state.rev);
   }
   if (done) done(state);

@@ -109,7 +109,7 @@ stage.test("the second session follows light, material, environment, size and sc
     async () => (await there("settings.get")).settings.exposure.compensation === 1.25,
     "the exposure",
   );
-  await eventually(async () => (await there("session.info")).width === 640, "the size");
+  await eventually(async () => (await there("session.info")).width === 320, "the size");
 
   // Resets are followed, too.
   await server.call("lights.patch", { light, patch: { intensity: null, enabled: null } });

@@ -117,6 +117,43 @@ stage.test("a read-only viewer is informed and cannot change anything", async ()
   }
 });
 
+stage.test("a viewer looks around on its own, also with a view token", async () => {
+  const controller = await watch();
+  const { page } = await watch(viewToken);
+  const shared = await staticCamera(controller.page, stage.server);
+  await page.getByRole("button", { name: "Participants" }).click();
+  await page.getByRole("button", { name: "Look around on my own" }).press("Enter");
+  const note = page.locator(".control-note");
+  await note.getByText("You look around on your own.").waitFor();
+  await page.locator("#pill", { hasText: "Live, looking around" }).waitFor();
+  const { sessions } = await stage.server.call("session.list");
+  const { name } = sessions.find(({ follows }) => follows === "main");
+  const own = () => stage.server.call("camera.get", {}, name);
+  assert.deepEqual((await own()).eye, shared.eye);
+  await page.locator("#view").focus();
+  await page.keyboard.press("ArrowLeft", { delay: 100 });
+  await eventually(
+    async () => distance((await own()).eye, shared.eye) > 0.05,
+    "a movement of the own camera",
+  );
+  assert.deepEqual((await stage.server.call("camera.get")).eye, shared.eye);
+  assert.deepEqual(await enabledControls(page), [], "more than the camera can be changed");
+
+  // What others change is followed.
+  await stage.server.call("settings.patch", { patch: { exposure: { compensation: 1 } } });
+  const entry = page.locator('[data-path="exposure.compensation"] input.number');
+  await eventually(async () => (await entry.inputValue()) === "1", "the exposure");
+  await stage.server.call("settings.patch", { patch: { exposure: null } });
+  await screenshot(page, "looking_around");
+  assert.deepEqual(await seriousFindings(page), []);
+
+  await note.getByRole("button", { name: "Follow again" }).click();
+  await note.getByText("View only: you can't change anything.").waitFor();
+  await stage.server.call("camera.set", { eye: [3, 2, 5] });
+  await page.waitForFunction(() => window.seen.camera?.eye[0] === 3);
+  assert.equal((await stage.server.call("session.list")).sessions.length, 1);
+});
+
 stage.test(
   "a link does not change the session for a read-only viewer, who is informed",
   async () => {

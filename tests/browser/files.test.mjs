@@ -1,10 +1,11 @@
-// Uploads of scene files: accepted, rejected, disabled.
+// Uploads of scenes and environments: accepted, rejected, disabled; a server without scenes.
 
 import assert from "node:assert/strict";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after } from "node:test";
+import { seriousFindings } from "./harness/axe.mjs";
 import { eventually, firstFrame, screenshot } from "./harness/browser.mjs";
 import { sceneRoot } from "./harness/environment.mjs";
 import { Stage } from "./harness/stage.mjs";
@@ -19,6 +20,19 @@ const open = new Stage({
   view,
 });
 const closed = new Stage({ view });
+const emptyFolder = join(folder, "empty");
+mkdirSync(emptyFolder);
+const empty = new Stage({
+  scene: null,
+  serverArguments: ["--uploads", join(folder, "of_empty"), "--scene-root", emptyFolder],
+  view,
+});
+
+/** A Radiance file of 8 x 4 pixels of one colour. */
+const panorama = Buffer.concat([
+  Buffer.from("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n"),
+  Buffer.alloc(4 * 32, Buffer.from([40, 90, 200, 128])),
+]);
 
 /** Drops a file on the page as a file manager does. */
 async function drop(page, name, bytes) {
@@ -75,6 +89,45 @@ open.test("a file can be uploaded by the file chooser", async () => {
   await open.server.call("scene.load", { name: "shadow_objects" });
 });
 
+open.test("an environment is uploaded, shown, and found by its thumbnail", async () => {
+  const { page } = await open.watch({ expectErrors: true }); // the browser reports failed requests
+  await drop(page, "Blue sky.hdr", panorama);
+  const chosen = async () => (await open.server.call("environment.list")).current;
+  await eventually(async () => (await chosen()) === "Blue_sky", "the dropped environment");
+  assert.equal(await page.locator("select[name=environment]").inputValue(), "Blue_sky");
+  await page.getByRole("button", { name: "Show thumbnails of all environments" }).click();
+  const tiles = page.getByRole("group", { name: "Environments" });
+  const tile = tiles.getByRole("button", { name: "Blue_sky" });
+  assert.equal(await tile.getAttribute("aria-pressed"), "true");
+  await eventually(
+    () => tile.locator("img").evaluate((image) => image.naturalWidth === 160),
+    "its thumbnail",
+  );
+  await screenshot(page, "environments");
+  assert.deepEqual(await seriousFindings(page), []);
+  await tiles.getByRole("button", { name: "studio" }).press("Enter");
+  await eventually(async () => (await chosen()) === "studio", "the studio");
+  const text = await toastAfterDrop(page, "broken.exr", Buffer.from("not an environment\n"));
+  assert.match(text, /^broken\.exr is not an environment in the format \.hdr or \.exr\./);
+  const chooser = page.waitForEvent("filechooser");
+  await page.getByRole("button", { name: "Upload an environment" }).press("Enter");
+  await (await chooser).setFiles({ name: "cut.hdr", mimeType: "", buffer: panorama.subarray(0, 90) });
+  await page.locator(".toast", { hasText: "cut.hdr is incomplete: the file ends early." }).waitFor();
+  await open.server.call("environment.set", { name: null });
+});
+
+empty.test("a server without scenes says how to bring one, and shows it", async () => {
+  const { page } = await empty.open();
+  await page.getByRole("heading", { name: "No scenes found" }).waitFor();
+  await page.getByText("Drop a .glb file here").waitFor();
+  await screenshot(page, "no_scenes");
+  assert.deepEqual(await seriousFindings(page), []);
+  await drop(page, "first.glb", mirror);
+  await firstFrame(page);
+  assert.equal((await empty.server.call("scene.list")).current, "first");
+  await page.locator("select[name=environment]").waitFor();
+});
+
 open.test("an invalid file is rejected with a reason", async () => {
   const { page } = await open.watch({ expectErrors: true }); // the browser reports failed requests
   await page.waitForFunction(() => document.title.startsWith("shadow_objects"));
@@ -92,7 +145,7 @@ open.test("an invalid file is rejected with a reason", async () => {
   assert.match(other, /^other\.glb is not a glTF file\./);
   const nameTaken = await toastAfterDrop(page, "mirror.glb", mirror);
   assert.match(nameTaken, /has its own scene mirror/);
-  assert.match(await toastAfterDrop(page, "scene.gltf", mirror), /Only \.glb files/);
+  assert.match(await toastAfterDrop(page, "scene.gltf", mirror), /^Only \.glb files/);
 });
 
 closed.test("disabled uploads are reported before sending the file", async () => {

@@ -12,7 +12,7 @@ import { Stage } from "./harness/stage.mjs";
 
 const permissions = ["clipboard-read", "clipboard-write"];
 const view = { viewport: { width: 720, height: 405 } };
-const stage = new Stage({ view });
+const stage = new Stage({ view, resolution: "auto" });
 
 async function openSave(page, { format = "png", samples = "converged" } = {}) {
   await chooseOutput(page, "Save image");

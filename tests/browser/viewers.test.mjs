@@ -108,6 +108,30 @@ async function pinch(page, middle) {
   await session.send("Input.dispatchTouchEvent", { type: "touchEnd", touchPoints: [] });
 }
 
+/** The view ends where the sheet begins, and frames have its shape. */
+async function viewAboveSheet(page) {
+  const [view, sheet] = await Promise.all(
+    ["#view", "#panel"].map((selector) => page.locator(selector).boundingBox()),
+  );
+  assert.ok(view.height > 120, `a view of ${view.height} px`);
+  assert.ok(Math.abs(view.y + view.height - sheet.y) <= 1, "the sheet covers the view");
+  await eventually(async () => {
+    const { width, height } = await stage.server.call("session.info");
+    return Math.abs((width * view.height) / (height * view.width) - 1) < 0.03;
+  }, "frames of the view's shape");
+}
+
+stage.test("on a desktop at 200 % zoom the view is above the panel", async () => {
+  // A window of 1280 x 900 pixels.
+  const { page } = await stage.watch({
+    viewport: { width: 640, height: 450 },
+    deviceScaleFactor: 2,
+  });
+  await page.getByRole("button", { name: "Show panel" }).click();
+  await viewAboveSheet(page);
+  await screenshot(page, "zoomed");
+});
+
 stage.test("on a phone the panel is a sheet and one finger orbits", async () => {
   const { page } = await stage.watch({
     viewport: { width: 360, height: 740 },
@@ -139,6 +163,7 @@ stage.test("on a phone the panel is a sheet and one finger orbits", async () => 
   await eventually(async () => (await panel.boundingBox()).y < 500, "an open sheet");
   await unfoldAll(page);
   await screenshot(page, "phone_sheet");
+  await viewAboveSheet(page);
   const widest = await page.evaluate(() =>
     Math.max(
       document.documentElement.scrollWidth,

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { sceneName } from "../src/overlay/upload.ts";
+import { nameOf } from "../src/overlay/upload.ts";
 import { codecString } from "../src/stream/annex_b.ts";
 
 test("the codec string comes from the first sequence parameter set", () => {
@@ -11,7 +11,7 @@ test("the codec string comes from the first sequence parameter set", () => {
 });
 
 test("file names become valid scene names", () => {
-  assert.equal(sceneName("My model (1).glb"), "My_model_1");
-  assert.equal(sceneName("../../x.glb"), "x");
-  assert.equal(sceneName(".glb"), "scene");
+  assert.equal(nameOf("My model (1).glb"), "My_model_1");
+  assert.equal(nameOf("../../x.glb"), "x");
+  assert.equal(nameOf(".glb"), "scene");
 });

@@ -415,7 +415,7 @@ class Session(_Group):
             defaults or the copied settings.
         width: Frame width. [pixels]
 
-        Returns: control, height, idle_seconds, name, rev, scene, viewers, width.
+        Returns: control, follows, height, idle_seconds, name, rev, scene, viewers, width.
         """
         return self._call("session.create", _given({
             "copy_of": copy_of, "height": height, "idle_timeout": idle_timeout,
@@ -430,6 +430,16 @@ class Session(_Group):
         """
         return self._call("session.join", _given({"session": session}))
 
+    def detach(self) -> Dict[str, Any]:
+        """Gives this viewer a camera of its own: moves it to a new session that follows this
+        one in everything but the camera and the frame size, and ends when the viewer leaves
+        it. Only its camera can be changed there, also with a view token; session.join leads
+        back.
+
+        Returns: info, rev, session, viewer.
+        """
+        return self._call("session.detach", {})
+
     def list(self) -> Dict[str, Any]:
         """Lists the sessions and their limits.
 
@@ -440,7 +450,7 @@ class Session(_Group):
     def info(self) -> Dict[str, Any]:
         """Describes this session: its viewers and which of them have control.
 
-        Returns: control, height, idle_seconds, name, rev, scene, viewers, width.
+        Returns: control, follows, height, idle_seconds, name, rev, scene, viewers, width.
         """
         return self._call("session.info", {})
 
@@ -459,7 +469,7 @@ class Session(_Group):
             names or the caller.
         viewer: Id of the viewer that gets control.
 
-        Returns: control, height, idle_seconds, name, rev, scene, viewers, width.
+        Returns: control, follows, height, idle_seconds, name, rev, scene, viewers, width.
         """
         return self._call("session.control", _given({
             "action": action, "mode": mode, "viewer": viewer}))

@@ -48,11 +48,15 @@ constexpr std::size_t head_bytes_at_once = 4 * 1024;
 // How often it is checked whether the client of an answer that is being made is still there.
 constexpr std::chrono::milliseconds presence_interval{500};
 
-HttpResponse upload_response(const session::UploadedScene& scene) {
-  HttpResponse response = json_response(nlohmann::json{
-      {"name", scene.name},
-      {"bytes", scene.bytes},
-      {"triangles", scene.triangles}}.dump());
+HttpResponse upload_response(const session::UploadedFile& file) {
+  nlohmann::json described{{"name", file.name}, {"bytes", file.bytes}};
+  if (file.kind == session::UploadKind::scene) {
+    described["triangles"] = file.triangles;
+  } else {
+    described["width"] = file.width;
+    described["height"] = file.height;
+  }
+  HttpResponse response = json_response(described.dump());
   response.status = 201;
   return response;
 }
@@ -201,7 +205,8 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     framing_.cors = context_.access.cors_headers(request);
     const auto size = parser_->content_length();
     if (auto refused = upload_refusal(request, size)) return send(*std::move(refused));
-    auto begun = context_.uploads->begin(std::string(uploaded_name(request.path)), *size);
+    const UploadAddress address = *upload_address(request.path);
+    auto begun = context_.uploads->begin(address.kind, std::string(address.name), *size);
     if (!begun) return send(error_response(begun.error()));
     upload_ = *begun;
     upload_parser_.emplace(std::move(*parser_));
@@ -224,12 +229,15 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
       return text_response(403, "This token is read-only and cannot upload.");
     }
     if (context_.draining) return retry_later("The server is shutting down.");
-    if (uploaded_name(request.path).empty()) {
-      return text_response(404, "Scenes go to /api/v1/scenes/NAME.");
+    const std::optional<UploadAddress> address = upload_address(request.path);
+    if (!address) {
+      return text_response(404,
+                           "Scenes go to /api/v1/scenes/NAME, environments to "
+                           "/api/v1/environments/NAME.");
     }
     if (!length) return text_response(411, "An upload needs a Content-Length.");
     if (*length == 0) return text_response(400, "The upload is empty.");
-    return context_.router.name_conflict(uploaded_name(request.path));
+    return context_.router.name_conflict(*address);
   }
 
   void receive_upload() {
@@ -252,7 +260,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     stream_.next_layer().expires_never();
     context_.uploads->finish(
         std::exchange(upload_, nullptr),
-        [self = shared_from_this()](const protocol::Result<session::UploadedScene>& accepted) {
+        [self = shared_from_this()](const protocol::Result<session::UploadedFile>& accepted) {
           HttpResponse response =
               accepted ? upload_response(*accepted) : error_response(accepted.error());
           run_later(self->stream_.get_executor(), [self, response = std::move(response)]() mutable {

@@ -16,6 +16,9 @@ namespace heliograph::net {
 namespace {
 
 constexpr std::string_view sessions_prefix = "/api/v1/sessions/";
+constexpr std::string_view scenes_prefix = "/api/v1/scenes/";
+constexpr std::string_view environments_prefix = "/api/v1/environments/";
+constexpr std::string_view thumbnail_suffix = "/thumbnail.png";
 constexpr std::string_view viewer_module = "/heliograph-viewer.js";
 
 HttpResponse with_header(HttpResponse response, std::string name, std::string value) {
@@ -70,6 +73,14 @@ std::optional<ImageAddress> image_address(std::string_view path) {
   return ImageAddress{path.substr(0, split), path.substr(split + file.size())};
 }
 
+/// "/api/v1/environments/sky/thumbnail.png" -> sky
+std::optional<std::string_view> thumbnail_of(std::string_view path) {
+  if (!path.starts_with(environments_prefix) || !path.ends_with(thumbnail_suffix)) return {};
+  path.remove_prefix(environments_prefix.size());
+  if (path.size() <= thumbnail_suffix.size()) return {};
+  return path.substr(0, path.size() - thumbnail_suffix.size());
+}
+
 /// The value of frame-ancestors. @throws std::invalid_argument
 std::string frame_ancestors(const std::vector<std::string>& allowed) {
   if (allowed.empty()) return "'none'";
@@ -121,9 +132,15 @@ HttpResponse error_response(const protocol::Error& error) {
   }
 }
 
-std::string_view uploaded_name(std::string_view path) {
-  constexpr std::string_view prefix = "/api/v1/scenes/";
-  return path.starts_with(prefix) ? path.substr(prefix.size()) : std::string_view();
+std::optional<UploadAddress> upload_address(std::string_view path) {
+  for (const auto& [prefix, kind] :
+       {std::pair(scenes_prefix, session::UploadKind::scene),
+        std::pair(environments_prefix, session::UploadKind::environment)}) {
+    if (path.starts_with(prefix) && path.size() > prefix.size()) {
+      return UploadAddress{kind, path.substr(prefix.size())};
+    }
+  }
+  return std::nullopt;
 }
 
 HttpResponse retry_later(std::string_view why) {
@@ -185,22 +202,38 @@ void Router::handle(const HttpRequest& request, const Pending& pending, Reply re
   if (is_job_path(request.path)) {
     return reply(answer_job(request, host_.jobs(), admission.role));
   }
-  if (!options_.uploads.empty() && !uploaded_name(request.path).empty()) {
+  const bool reads = request.method == "GET" || request.method == "HEAD";
+  if (const auto file = thumbnail_of(request.path); file && reads) {
+    return environment_thumbnail(*file, std::move(reply));
+  }
+  if (!options_.uploads.empty() && upload_address(request.path)) {
     return reply(method_not_allowed("PUT"));
   }
-  if (request.method != "GET" && request.method != "HEAD") {
-    return reply(method_not_allowed("GET"));
-  }
+  if (!reads) return reply(method_not_allowed("GET"));
   if (const auto address = image_address(request.path)) {
     return image(request, *address, admission.role, pending, std::move(reply));
   }
   reply(answer_get(request));
 }
 
-std::optional<HttpResponse> Router::name_conflict(std::string_view scene) const {
-  const auto found = host_.catalogue().find(std::string(scene));
-  if (!found || found->root == options_.uploads) return std::nullopt;
-  return text_response(409, "Another scene has this name.");
+std::optional<HttpResponse> Router::name_conflict(const UploadAddress& upload) const {
+  const std::string name(upload.name);
+  const bool scene = upload.kind == session::UploadKind::scene;
+  const auto found = scene ? host_.catalogue().find(name) : host_.environments().find(name);
+  const auto& uploads = scene ? options_.uploads : options_.uploaded_environments;
+  if (!found || found->root == uploads) return std::nullopt;
+  return text_response(
+      409, scene ? "Another scene has this name." : "Another environment has this name.");
+}
+
+void Router::environment_thumbnail(std::string_view file, Reply reply) const {
+  host_.environments().thumbnail(std::string(file),
+                                 [reply](protocol::Result<std::vector<std::uint8_t>> png) {
+                                   if (!png) return reply(error_response(png.error()));
+                                   reply({.content_type = "image/png",
+                                          .body = {png->begin(), png->end()},
+                                          .headers = {{"Cache-Control", "private, max-age=60"}}});
+                                 });
 }
 
 HttpResponse Router::answer_metrics_listener(const HttpRequest& request) const {

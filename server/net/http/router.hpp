@@ -15,6 +15,7 @@
 #include "net/http/metrics.hpp"
 #include "net/security/access_control.hpp"
 #include "protocol/json/pending_answer.hpp"
+#include "session/library/upload_store.hpp"
 #include "session/session_host.hpp"
 
 namespace heliograph::net {
@@ -22,7 +23,15 @@ namespace heliograph::net {
 struct RouterOptions {
   std::vector<std::string> frame_ancestors;  // origins whose pages may embed ours, or 'self'
   bool metrics = true;                       // at /metrics
-  std::filesystem::path uploads;  // folder of uploaded scenes; empty: uploads are disabled
+  // Folders of uploaded scenes and environments; empty: uploads are disabled.
+  std::filesystem::path uploads;
+  std::filesystem::path uploaded_environments;
+};
+
+/// Where an upload goes.
+struct UploadAddress {
+  session::UploadKind kind = session::UploadKind::scene;
+  std::string_view name;
 };
 
 /// Of an image of a session: "main/frame.jpg" below the address of sessions.
@@ -44,8 +53,8 @@ class Router {
 
   /// Calls `reply` once, here or on another thread. `pending`: the answer while it is being made.
   void handle(const HttpRequest& request, const Pending& pending, Reply reply) const;
-  /// 409 if a scene that was not uploaded has this name.
-  std::optional<HttpResponse> name_conflict(std::string_view scene) const;
+  /// 409 if a file that was not uploaded has this name.
+  std::optional<HttpResponse> name_conflict(const UploadAddress& upload) const;
   /// The response on the metrics port: metrics and health, without a token.
   HttpResponse answer_metrics_listener(const HttpRequest& request) const;
   /// Security headers of every response: content security policy and the like.
@@ -59,6 +68,7 @@ class Router {
   std::optional<HttpResponse> health(const HttpRequest& request) const;
   HttpResponse metrics() const;
   void call(const HttpRequest& request, Role role, const Pending& pending, Reply reply) const;
+  void environment_thumbnail(std::string_view file, Reply reply) const;
   void image(const HttpRequest& request, const ImageAddress& address, Role role,
              const Pending& pending, Reply reply) const;
 
@@ -71,8 +81,8 @@ class Router {
   std::atomic<bool> draining_ = false;
 };
 
-/// NAME of "/api/v1/scenes/NAME", where uploads go; empty for other paths.
-std::string_view uploaded_name(std::string_view path);
+/// Of "/api/v1/scenes/NAME" and "/api/v1/environments/NAME", where uploads go.
+std::optional<UploadAddress> upload_address(std::string_view path);
 HttpResponse error_response(const protocol::Error& error);
 /// The response while the server shuts down: come back in a while.
 HttpResponse retry_later(std::string_view why);

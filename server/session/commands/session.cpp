@@ -17,9 +17,8 @@ namespace error = protocol::error;
 
 namespace {
 
-Result<SessionJoined> join(SessionHost& host, const SessionChoice& request,
-                           const std::string& viewer) {
-  const auto session = host.sessions().move(viewer, request.session);
+Result<SessionJoined> joined_session(const Result<std::shared_ptr<Session>>& session,
+                                     const std::string& viewer) {
   if (!session) return session.error();
   SessionJoined joined;
   joined.info = (*session)->info(viewer);
@@ -83,8 +82,12 @@ void add_session_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
   });
   add_command<methods::session_join>(
       dispatcher, host, [&](Session&, const SessionChoice& request, const std::string& viewer) {
-        return join(host, request, viewer);
+        return joined_session(host.sessions().move(viewer, request.session), viewer);
       });
+  add_command<methods::session_detach>(dispatcher, host,
+                                       [&](Session&, const Empty&, const std::string& viewer) {
+                                         return joined_session(host.detach(viewer), viewer);
+                                       });
   add_command<methods::session_list>(
       dispatcher, host,
       [&](Session&, const Empty&, const std::string& viewer) -> Result<SessionList> {

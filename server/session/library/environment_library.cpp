@@ -14,6 +14,7 @@
 #include "scene/import.hpp"
 #include "scene/studio.hpp"
 #include "session/event_log.hpp"
+#include "session/library/environment_thumbnail.hpp"
 
 namespace heliograph::session {
 
@@ -22,14 +23,26 @@ using protocol::Result;
 namespace {
 
 constexpr std::size_t max_queued_environments = 8;
+constexpr std::size_t max_queued_thumbnails = 64;
+constexpr std::size_t max_cached_thumbnails = 512;
 constexpr std::string_view studio_name = "studio";  // unless a file has it
+
+scene::Environment environment_of(const CatalogueEntry& entry) {
+  return entry.path.empty() ? scene::studio_environment() : scene::load_environment(entry.path);
+}
 
 }  // namespace
 
-EnvironmentLibrary::EnvironmentLibrary(render::Engine& engine, const SceneCatalogue& catalogue)
+EnvironmentLibrary::EnvironmentLibrary(render::Engine& engine, SceneCatalogue catalogue)
     : engine_(engine),
-      catalogue_(catalogue),
-      loader_("environment loader", max_queued_environments) {}
+      catalogue_(std::move(catalogue)),
+      loader_("environment loader", max_queued_environments),
+      thumbnail_maker_("environment thumbnails", max_queued_thumbnails) {}
+
+void EnvironmentLibrary::stop() {
+  loader_.stop();
+  thumbnail_maker_.stop();
+}
 
 std::vector<CatalogueEntry> EnvironmentLibrary::list() const {
   std::vector<CatalogueEntry> files = catalogue_.list_files({".hdr", ".exr"});
@@ -54,11 +67,8 @@ Result<CatalogueEntry> EnvironmentLibrary::find(const std::string& name) const {
 Result<void> EnvironmentLibrary::load_into(Session& session, const CatalogueEntry& entry,
                                            const std::string& by) {
   try {
-    return session.scene().set_environment(
-        entry.name,
-        engine_.prefilter(entry.path.empty() ? scene::studio_environment()
-                                             : scene::load_environment(entry.path)),
-        by);
+    return session.scene().set_environment(entry.name, engine_.prefilter(environment_of(entry)),
+                                           by);
   } catch (const scene::ImportError& failure) {
     return protocol::error::invalid("name", "cannot be loaded: " + std::string(failure.what()));
   } catch (const render::DeviceLost& failure) {
@@ -82,6 +92,31 @@ void EnvironmentLibrary::show(std::shared_ptr<Session> session, const std::strin
   if (!taken) {
     done(protocol::error::full("too many environment loads are pending",
                                std::to_string(max_queued_environments)));
+  }
+}
+
+void EnvironmentLibrary::thumbnail(const std::string& name, Thumbnail done) {
+  Result<CatalogueEntry> entry = find(name);
+  if (!entry) return done(entry.error());
+  const bool taken = thumbnail_maker_.post(
+      [this, entry = *std::move(entry), done] { done(make_thumbnail(entry)); });
+  if (!taken) {
+    done(protocol::error::full("too many thumbnails are pending",
+                               std::to_string(max_queued_thumbnails)));
+  }
+}
+
+Result<std::vector<std::uint8_t>> EnvironmentLibrary::make_thumbnail(const CatalogueEntry& entry) {
+  try {
+    const scene::SourceFile file = scene::examine_file(entry.path);
+    const auto cached = thumbnails_.find(entry.name);
+    if (cached != thumbnails_.end() && cached->second.file == file) return cached->second.png;
+    std::vector<std::uint8_t> png = environment_thumbnail(environment_of(entry));
+    if (thumbnails_.size() >= max_cached_thumbnails) thumbnails_.clear();
+    thumbnails_[entry.name] = {file, png};
+    return png;
+  } catch (const scene::ImportError& failure) {
+    return protocol::error::invalid("name", "cannot be loaded: " + std::string(failure.what()));
   }
 }
 

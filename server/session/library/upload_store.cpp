@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "scene/environment.hpp"
 #include "session/event_log.hpp"
 
 namespace heliograph::session {
@@ -19,6 +20,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t max_name_length = 64;
 constexpr std::size_t max_queued_checks = 4;
 constexpr std::size_t glb_header_bytes = 12;
+constexpr std::string_view exr_magic = "\x76\x2f\x31\x01";
 
 bool is_valid_name(const std::string& name) {
   const bool characters = std::all_of(name.begin(), name.end(), [](unsigned char c) {
@@ -29,6 +31,12 @@ bool is_valid_name(const std::string& name) {
 
 std::uint32_t little_endian(const unsigned char* bytes) {
   return bytes[0] | bytes[1] << 8 | bytes[2] << 16 | static_cast<std::uint32_t>(bytes[3]) << 24;
+}
+
+bool starts_with(const fs::path& file, std::string_view magic) {
+  std::string start(magic.size(), '\0');
+  std::ifstream stream(file, std::ios::binary);
+  return stream.read(start.data(), std::ssize(start)) && start == magic;
 }
 
 /// The fault in the header of a binary glTF file (specification section 4.4.2), or nothing.
@@ -50,7 +58,9 @@ UploadStore::UploadStore(UploadOptions options)
     : options_(std::move(options)), checker_("upload checker", max_queued_checks) {
   try {
     fs::create_directories(options_.folder / "scenes");
+    fs::create_directories(options_.folder / "environments");
     scenes_ = fs::canonical(options_.folder / "scenes");
+    environments_ = fs::canonical(options_.folder / "environments");
     incoming_ = scenes_.parent_path() / "incoming";
     fs::remove_all(incoming_);
     fs::create_directories(incoming_);
@@ -60,10 +70,12 @@ UploadStore::UploadStore(UploadOptions options)
   }
 }
 
-protocol::Result<std::shared_ptr<UploadStore::Incoming>> UploadStore::begin(const std::string& name,
+protocol::Result<std::shared_ptr<UploadStore::Incoming>> UploadStore::begin(UploadKind kind,
+                                                                            const std::string& name,
                                                                             std::uint64_t bytes) {
   if (!is_valid_name(name)) {
-    return protocol::error::invalid("name", "is not a valid name of a scene",
+    const std::string what = kind == UploadKind::scene ? "a scene" : "an environment";
+    return protocol::error::invalid("name", "is not a valid name of " + what,
                                     "1 to 64 letters, digits, _ and -");
   }
   if (bytes > options_.max_bytes) {
@@ -72,7 +84,7 @@ protocol::Result<std::shared_ptr<UploadStore::Incoming>> UploadStore::begin(cons
   }
   const std::lock_guard lock(mutex_);
   if (bytes_kept() + reserved_bytes_ + bytes > options_.quota) {
-    return protocol::error::full("the quota of uploaded scenes is used up",
+    return protocol::error::full("the quota of uploaded files is used up",
                                  std::to_string(options_.quota) + " bytes");
   }
   const fs::path folder = incoming_ / std::to_string(++upload_count_);
@@ -80,34 +92,33 @@ protocol::Result<std::shared_ptr<UploadStore::Incoming>> UploadStore::begin(cons
   fs::create_directory(folder, error);
   if (error) return protocol::error::internal();
   reserved_bytes_ += bytes;
-  return std::make_shared<Incoming>(*this, name, bytes, folder);
+  return std::make_shared<Incoming>(*this, kind, name, bytes, folder);
 }
 
 void UploadStore::finish(std::shared_ptr<Incoming> incoming,
-                         std::function<void(protocol::Result<UploadedScene>)> done) {
+                         std::function<void(protocol::Result<UploadedFile>)> done) {
   // The task is its only owner, so that its reserved bytes are released before `done`.
   const bool taken = checker_.post([this, incoming = std::move(incoming), done]() mutable {
-    protocol::Result<UploadedScene> result = accept(*incoming);
+    protocol::Result<UploadedFile> result = accept(*incoming);
     incoming.reset();
     done(std::move(result));
   });
   if (!taken) done(protocol::error::full("too many uploads are being checked"));
 }
 
-protocol::Result<UploadedScene> UploadStore::accept(Incoming& incoming) {
+protocol::Result<UploadedFile> UploadStore::accept(Incoming& incoming) {
   const auto refused = [&](const std::string& why) {
     log_warning({}, "the upload " + incoming.name() + " was refused: " + why);
     return protocol::error::invalid("body", why);
   };
   try {
     const fs::path file = incoming.path();
-    if (const auto fault = header_fault(file); !fault.empty()) return refused(std::string(fault));
-    // Alone in its folder: a file that needs others fails here and not in the catalogue.
-    const scene::Scene imported = scene::import_gltf(file, options_.import_limits);
-    const UploadedScene uploaded{.name = incoming.name(),
-                                 .bytes = fs::file_size(file),
-                                 .triangles = imported.triangle_count()};
-    incoming.keep_in(scenes_);
+    const bool is_scene = incoming.kind() == UploadKind::scene;
+    const std::string_view fault = is_scene ? header_fault(file) : std::string_view();
+    if (!fault.empty()) return refused(std::string(fault));
+    UploadedFile uploaded{
+        .kind = incoming.kind(), .name = incoming.name(), .bytes = fs::file_size(file)};
+    is_scene ? accept_scene(incoming, uploaded) : accept_environment(incoming, uploaded);
     log_info({}, "the upload " + incoming.name() +
                      " was accepted: " + std::to_string(uploaded.bytes) + " bytes");
     return uploaded;
@@ -119,19 +130,42 @@ protocol::Result<UploadedScene> UploadStore::accept(Incoming& incoming) {
   }
 }
 
+/// Alone in its folder: a file that needs others fails here and not in the catalogue.
+void UploadStore::accept_scene(Incoming& incoming, UploadedFile& accepted) {
+  accepted.triangles = scene::import_gltf(incoming.path(), options_.import_limits).triangle_count();
+  incoming.keep_as(scenes_ / (incoming.name() + ".glb"));
+}
+
+/// Its content tells its format; one of the same name is replaced, in whichever format it is.
+void UploadStore::accept_environment(Incoming& incoming, UploadedFile& accepted) {
+  const scene::Environment environment = scene::load_environment(incoming.path());
+  accepted.width = environment.width;
+  accepted.height = environment.height;
+  const bool exr = starts_with(incoming.path(), exr_magic);
+  incoming.keep_as(environments_ / (incoming.name() + (exr ? ".exr" : ".hdr")));
+  std::error_code ignored;
+  fs::remove(environments_ / (incoming.name() + (exr ? ".hdr" : ".exr")), ignored);
+}
+
 std::uint64_t UploadStore::bytes_kept() const {
   std::uint64_t bytes = 0;
   std::error_code error;
-  for (const fs::directory_entry& entry : fs::directory_iterator(scenes_, error)) {
-    const std::uintmax_t size = entry.file_size(error);
-    if (!error) bytes += size;
+  for (const fs::path& folder : {scenes_, environments_}) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+      const std::uintmax_t size = entry.file_size(error);
+      if (!error) bytes += size;
+    }
   }
   return bytes;
 }
 
-UploadStore::Incoming::Incoming(UploadStore& store, std::string name, std::uint64_t bytes,
-                                fs::path folder)
-    : store_(store), name_(std::move(name)), bytes_(bytes), folder_(std::move(folder)) {}
+UploadStore::Incoming::Incoming(UploadStore& store, UploadKind kind, std::string name,
+                                std::uint64_t bytes, fs::path folder)
+    : store_(store),
+      kind_(kind),
+      name_(std::move(name)),
+      bytes_(bytes),
+      folder_(std::move(folder)) {}
 
 UploadStore::Incoming::~Incoming() {
   const std::lock_guard lock(store_.mutex_);
@@ -140,9 +174,9 @@ UploadStore::Incoming::~Incoming() {
   store_.reserved_bytes_ -= bytes_;
 }
 
-void UploadStore::Incoming::keep_in(const fs::path& folder) {
+void UploadStore::Incoming::keep_as(const fs::path& file) {
   const std::lock_guard lock(store_.mutex_);
-  fs::rename(path(), folder / path().filename());
+  fs::rename(path(), file);
   store_.reserved_bytes_ -= std::exchange(bytes_, 0);
 }
 

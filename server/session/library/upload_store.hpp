@@ -20,14 +20,19 @@ struct UploadOptions {
   scene::ImportLimits import_limits;
 };
 
-struct UploadedScene {
+enum class UploadKind { scene, environment };
+
+struct UploadedFile {
+  UploadKind kind = UploadKind::scene;
   std::string name;
   std::uint64_t bytes = 0;
-  std::uint64_t triangles = 0;
+  std::uint64_t triangles = 0;  // of a scene
+  std::uint32_t width = 0;      // of an environment, in pixels
+  std::uint32_t height = 0;
 };
 
-/// Scenes that clients upload. Each is checked by importing it in a folder of its own, and then
-/// moved atomically to where the catalogue finds it. Thread safe.
+/// Scenes and environments that clients upload. Each is checked by importing it in a folder of its
+/// own, and then moved atomically to where the catalogue finds it. Thread safe.
 class UploadStore {
  public:
   /// Creates the folders and removes unfinished uploads of an earlier process.
@@ -36,26 +41,33 @@ class UploadStore {
 
   /// Folder of accepted scenes: a root for the catalogue.
   const std::filesystem::path& scenes() const { return scenes_; }
+  /// Folder of accepted environments, apart from the scenes so that none becomes the sky of a scene
+  /// by its name.
+  const std::filesystem::path& environments() const { return environments_; }
   std::uint64_t max_bytes() const { return options_.max_bytes; }
 
   /// A file that is being received. The destructor releases its reserved bytes and removes the file
   /// if it was not accepted.
   class Incoming;
   /// Starts an upload of this name and size; its bytes go to `path()`.
-  protocol::Result<std::shared_ptr<Incoming>> begin(const std::string& name, std::uint64_t bytes);
+  protocol::Result<std::shared_ptr<Incoming>> begin(UploadKind kind, const std::string& name,
+                                                    std::uint64_t bytes);
   /// Checks the received file on a thread of its own and moves it into place. When `done` is called
   /// nothing of the upload is left but the accepted scene.
   void finish(std::shared_ptr<Incoming> incoming,
-              std::function<void(protocol::Result<UploadedScene>)> done);
+              std::function<void(protocol::Result<UploadedFile>)> done);
   /// Ends the thread; `done` is not called any more.
   void stop() { checker_.stop(); }
 
  private:
-  protocol::Result<UploadedScene> accept(Incoming& incoming);
+  protocol::Result<UploadedFile> accept(Incoming& incoming);
+  void accept_scene(Incoming& incoming, UploadedFile& accepted);
+  void accept_environment(Incoming& incoming, UploadedFile& accepted);
   std::uint64_t bytes_kept() const;
 
   const UploadOptions options_;
   std::filesystem::path scenes_;
+  std::filesystem::path environments_;
   std::filesystem::path incoming_;
   std::mutex mutex_;
   std::uint64_t reserved_bytes_ = 0;  // for files that are being received
@@ -65,19 +77,24 @@ class UploadStore {
 
 class UploadStore::Incoming {
  public:
-  Incoming(UploadStore& store, std::string name, std::uint64_t bytes, std::filesystem::path folder);
+  Incoming(UploadStore& store, UploadKind kind, std::string name, std::uint64_t bytes,
+           std::filesystem::path folder);
   ~Incoming();
   Incoming(const Incoming&) = delete;
   Incoming& operator=(const Incoming&) = delete;
 
+  UploadKind kind() const { return kind_; }
   const std::string& name() const { return name_; }
-  std::filesystem::path path() const { return folder_ / (name_ + ".glb"); }
-  /// Moves the file to its final folder and releases its reserved bytes, atomically. @throws
+  std::filesystem::path path() const {
+    return folder_ / (name_ + (kind_ == UploadKind::scene ? ".glb" : ""));
+  }
+  /// Moves the file to its final place and releases its reserved bytes, atomically. @throws
   /// std::filesystem::filesystem_error
-  void keep_in(const std::filesystem::path& folder);
+  void keep_as(const std::filesystem::path& file);
 
  private:
   UploadStore& store_;
+  const UploadKind kind_;
   const std::string name_;
   std::uint64_t bytes_;  // reserved
   const std::filesystem::path folder_;

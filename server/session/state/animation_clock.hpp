@@ -15,6 +15,8 @@ struct AnimationClock {
   bool playing = false;
   Clock::time_point since;
 
+  bool operator==(const AnimationClock&) const = default;
+
   double at(Clock::time_point now) const {
     if (!playing) return seconds;
     return seconds + rate * std::chrono::duration<double>(now - since).count();

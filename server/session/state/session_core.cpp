@@ -29,6 +29,33 @@ void SessionCore::changed(bool new_revision) {
   if (new_revision) ++rev;
   changed_at = Clock::now();
   wake->notify();
+  lead();
+}
+
+void SessionCore::lead() const {
+  for (const auto& weak : followers) {
+    if (const auto follower = weak.lock()) follower->follow(*this);
+  }
+}
+
+void SessionCore::follow(const SessionCore& leader) {
+  const std::lock_guard lock(mutex);
+  const AnimationClock clock = timeline.clock();
+  timeline.follow(leader.timeline);
+  const bool same =
+      resources == leader.resources && scene == leader.scene && settings == leader.settings &&
+      environment == leader.environment && edits.device_lights() == leader.edits.device_lights() &&
+      edits.device_materials() == leader.edits.device_materials() && clock == timeline.clock();
+  if (same) return;
+  if (scene != leader.scene) camera.copy_from(leader.camera);
+  scene = leader.scene;
+  resources = leader.resources;
+  scene_info = leader.scene_info;
+  edits = leader.edits;
+  environment = leader.environment;
+  environment_name = leader.environment_name;
+  settings = leader.settings;
+  changed();
 }
 
 RenderState SessionCore::snapshot() const {

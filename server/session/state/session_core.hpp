@@ -6,6 +6,8 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <vector>
 
 #include "protocol/json/jsonrpc.hpp"
 #include "protocol/messages/messages.hpp"
@@ -34,12 +36,20 @@ class Measurements;
 /// requests (`done`, `fail`) are called after it is released. Order of locks: `mutex`, then that of
 /// `viewers`. Whether a caller has control is checked before a command, by the dispatcher's gate;
 /// only the size of frames is checked here, since stream.configure is for all viewers.
+///
+/// A session may be followed by others, which have its scene, settings and time with a camera of
+/// their own: `changed` and `notify_others` pass changes on to them, under both locks, that of the
+/// leader first.
 struct SessionCore {
   SessionCore(SessionOptions session_options, std::shared_ptr<WakeEvent> wake_event,
               Measurements* session_measurements);
 
   /// The state was changed. `new_revision`: by a command, so that clients see another revision.
   void changed(bool new_revision = true);
+  /// Passes what followers share with this session on to them.
+  void lead() const;
+  /// Takes over what followers share with this session, if it differs; under the leader's lock.
+  void follow(const SessionCore& leader);
   /// Everything that a frame depends on.
   RenderState snapshot() const;
   protocol::Result<void> require_scene() const;
@@ -52,11 +62,28 @@ struct SessionCore {
   template <class Notification>
   void notify_others(const std::string& by, const typename Notification::Params& params) {
     viewers.send_others(by, protocol::make_notification<Notification>(params), {});
+    tell_followers<Notification>(params, {});
   }
   /// The same for a notification that holds a whole state: it replaces an older one that is queued.
   template <class Notification>
   void notify_others_latest(const std::string& by, const typename Notification::Params& params) {
     viewers.send_others(by, protocol::make_notification<Notification>(params), Notification::name);
+    tell_followers<Notification>(params, Notification::name);
+  }
+  /// Sends a notification to the viewers of all followers, with their own revisions.
+  template <class Notification>
+  void tell_followers(typename Notification::Params params, std::string_view key) {
+    if constexpr (!std::is_same_v<Notification, protocol::notifications::camera_changed> &&
+                  !std::is_same_v<Notification, protocol::notifications::lockstep_changed>) {
+      for (const auto& weak : followers) {
+        const auto follower = weak.lock();
+        if (!follower) continue;
+        const std::lock_guard lock(follower->mutex);
+        if constexpr (requires { params.rev; }) params.rev = follower->rev;
+        if constexpr (requires { params.animation.rev; }) params.animation.rev = follower->rev;
+        follower->viewers.send_all(protocol::make_notification<Notification>(params), key);
+      }
+    }
   }
 
   const SessionOptions options;
@@ -83,6 +110,7 @@ struct SessionCore {
   Timeline timeline;
   CaptureQueue captures;
   ReferenceMode reference;
+  std::vector<std::weak_ptr<SessionCore>> followers;
 };
 
 }  // namespace heliograph::session

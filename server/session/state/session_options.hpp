@@ -23,6 +23,7 @@ struct SessionOptions {
   std::uint32_t height = 720;
   protocol::Settings settings;
   SessionLimits limits;
+  std::string follows;  // the session whose scene, settings and time it has; empty: its own
   /// No scene will be loaded at the start: the first frame does not wait for one.
   bool starts_empty = false;
 };

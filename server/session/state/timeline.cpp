@@ -30,6 +30,13 @@ void Timeline::copy_from(const Timeline& other) {
   time_.reset();
 }
 
+void Timeline::follow(const Timeline& leader) {
+  clock_ = leader.clock_;
+  if (!leader.in_lockstep()) return;
+  clock_ = leader.clock_now();
+  clock_.playing = false;
+}
+
 Result<void> Timeline::play(const protocol::AnimationPlay& request, const scene::Scene& scene) {
   if (scene.clips.empty()) return error::not_found("clip", "the scene has no clips");
   AnimationClock clock = clock_now();

@@ -43,6 +43,8 @@ class Timeline {
   explicit Timeline(std::size_t max_steps) : max_steps_(max_steps) {}
   /// Takes over the clip of another session as it stands now, out of lockstep.
   void copy_from(const Timeline& other);
+  /// Runs with the clip of another session; where that is in lockstep, stands where it stands.
+  void follow(const Timeline& leader);
 
   const AnimationClock& clock() const { return clock_; }
   /// For a scene that is new.

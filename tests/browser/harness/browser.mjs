@@ -1,24 +1,32 @@
 // A headless Chromium, pages that record errors, and helpers of the tests.
 
 import { join } from "node:path";
-import { chromium } from "playwright-core";
-import { chromiumPath, outputFolder } from "./environment.mjs";
+import { chromium, firefox } from "playwright-core";
+import { chromiumPath, firefoxPath, inFirefox, outputFolder } from "./environment.mjs";
 import { observer } from "./observer.mjs";
 
+const launchOptions = {
+  executablePath: chromiumPath,
+  args: [
+    "--headless",
+    "--no-sandbox",
+    "--disable-gpu",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+  ],
+};
+
+/** A browser that test files use one after the other. */
+export const startBrowserServer = () => chromium.launchServer(launchOptions);
+
+/** The browser that HELIOGRAPH_TEST_BROWSER gives the address of, or a new one. */
 export function launchBrowser() {
-  return chromium.launch({
-    executablePath: chromiumPath,
-    args: [
-      "--headless",
-      "--no-sandbox",
-      "--disable-gpu",
-      "--disable-quic",
-      "--no-first-run",
-      "--disable-background-networking",
-      "--disable-component-update",
-      "--disable-sync",
-    ],
-  });
+  if (inFirefox) return firefox.launch({ channel: "moz-firefox", executablePath: firefoxPath });
+  const address = process.env.HELIOGRAPH_TEST_BROWSER;
+  return address ? chromium.connect(address) : chromium.launch(launchOptions);
 }
 
 /** Opens the client. `pageErrors` collects console errors, exceptions and CSP violations. */
@@ -122,8 +130,11 @@ export async function openTab(page, name) {
 
 /** Opens the tab that contains an element of the panel. */
 export async function reveal(locator) {
-  const tab = await locator.first().evaluate((node) => node.closest("[data-tab]").dataset.tab);
-  await openTab(locator.page(), tab);
+  const tab = await locator.first().evaluate((node) => {
+    const page = node.closest("[data-tab]");
+    return page.hidden ? page.dataset.tab : null;
+  });
+  if (tab) await openTab(locator.page(), tab);
 }
 
 /** Opens every section of the panel. */
@@ -177,11 +188,12 @@ export async function viewScreenshot(page, name) {
 /** Calls until the result is truthy; throws with the last result otherwise. */
 export async function eventually(read, what, timeout = 30_000) {
   const deadline = Date.now() + timeout;
-  let last;
+  let [last, pause] = [null, 10];
   do {
     last = await read();
     if (last) return last;
-    await new Promise((resolve) => setTimeout(resolve, 100));
+    await new Promise((resolve) => setTimeout(resolve, pause));
+    pause = Math.min(100, 1.5 * pause);
   } while (Date.now() < deadline);
   throw new Error(`${what} did not happen within ${timeout / 1000} s (last: ${last})`);
 }

@@ -58,11 +58,12 @@ function headersFor(args) {
   return args.includes("--token") ? { authorization: `Bearer ${token}` } : {};
 }
 
-/** Port 0 selects a free port. Resolves when the server has printed its URL. */
+/** Port 0 selects a free port. The scenes are those of the tests unless `args` names others. Resolves when the server has printed its URL. */
 export function startServer(port = 0, args = []) {
+  const roots = args.includes("--scene-root") ? [] : ["--scene-root", sceneRoot];
   const child = spawn(
     serverBinary,
-    ["serve", "--port", String(port), "--scene-root", sceneRoot, ...args],
+    ["serve", "--port", String(port), ...roots, ...args],
     { stdio: ["ignore", "pipe", "pipe"] },
   );
   const server = new Server(child);

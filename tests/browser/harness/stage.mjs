@@ -11,20 +11,23 @@ after(() => browser?.close());
 
 export class Stage {
   /**
-   * The server loads `scene` and has `serverArguments`; a frame is converged after `samples`, or
-   * the server's default if null. `view` has options of every page's context. `prepare` runs once
+   * The server loads `scene`, unless it is null, and has `serverArguments`; a frame is converged after `samples`, or
+   * the server's default if null. Pages ask for frames of this `resolution`, half of their own unless
+   * given, which take less time to render. `view` has options of every page's context. `prepare` runs once
    * with the page that tests share.
    */
   constructor({
     scene = "shadow_objects",
     samples = 16,
+    resolution = "half",
     serverArguments = [],
     view = {},
     prepare = async () => {},
   } = {}) {
-    this.serverArguments = [...serverArguments, "--scene", scene];
+    this.serverArguments = [...serverArguments, ...(scene ? ["--scene", scene] : [])];
     if (samples) this.serverArguments.push("--set", `accumulation.max_samples=${samples}`);
     this.samples = samples;
+    this.resolution = resolution;
     this.view = view;
     this.prepare = prepare;
     this.contexts = new Set();
@@ -52,19 +55,21 @@ export class Stage {
    * A browser context that is closed after the test. The hint of a first visit, which covers a part
    * of the view, is shown with `firstVisit` only.
    */
-  async context({ firstVisit = false, ...options } = {}) {
+  async context({ firstVisit = false, resolution = this.resolution, ...options } = {}) {
     const context = await browser.newContext({
       viewport: { width: 960, height: 540 },
       colorScheme: "dark",
       ...this.view,
       ...options,
     });
-    if (!firstVisit) {
-      await context.addInitScript(() => {
+    await context.addInitScript(
+      ({ hintSeen, size }) => {
         if (location.protocol === "about:") return; // without storage
-        localStorage.setItem("heliograph.hint_seen", "1");
-      });
-    }
+        if (hintSeen) localStorage.setItem("heliograph.hint_seen", "1");
+        localStorage.setItem("heliograph.resolution", size);
+      },
+      { hintSeen: !firstVisit, size: resolution },
+    );
     this.contexts.add(context);
     return context;
   }

@@ -1,4 +1,4 @@
-"""Uploads of scenes: off by default, checked completely, stored atomically."""
+"""Uploads of scenes and environments: off by default, checked completely, stored atomically."""
 
 import json
 import os
@@ -12,6 +12,7 @@ from harness.server import Server, ServerTestCase
 
 CONTROL, VIEW = "steering-0123456789", "watching-0123456789"
 BEARER = {"Authorization": "Bearer " + CONTROL}
+RADIANCE_HEADER = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n"
 
 
 def scene_file(name):
@@ -45,11 +46,12 @@ class Uploads(ServerTestCase):
         cls.folder.cleanup()
 
     def setUp(self):
-        for name in os.listdir(os.path.join(self.folder.name, "scenes")):
-            os.unlink(os.path.join(self.folder.name, "scenes", name))
+        for kind in ("scenes", "environments"):
+            for name in os.listdir(os.path.join(self.folder.name, kind)):
+                os.unlink(os.path.join(self.folder.name, kind, name))
 
-    def put(self, name, body, token=CONTROL):
-        status, _, answer = self.server.request("PUT", "/api/v1/scenes/" + name, body,
+    def put(self, name, body, token=CONTROL, kind="scenes"):
+        status, _, answer = self.server.request("PUT", f"/api/v1/{kind}/{name}", body,
                                                 {"Authorization": "Bearer " + token})
         return status, answer.decode()
 
@@ -98,6 +100,45 @@ class Uploads(ServerTestCase):
             self.assertEqual(status, 400, (body[:40], answer))
             self.assertNotIn(self.folder.name, answer, "paths of the server are not revealed")
         self.assertNotIn("broken", self.catalogue())
+        self.assertEqual(self.left_over(), [])
+
+    def environments(self):
+        return self.server.call("environment.list")["environments"]
+
+    def test_an_uploaded_environment_can_be_chosen_and_has_a_thumbnail(self):
+        self.server.headers = BEARER
+        self.addCleanup(setattr, self.server, "headers", {})
+        panorama = RADIANCE_HEADER + b"-Y 4 +X 8\n" + bytes([80, 120, 200, 128]) * 32
+        status, answer = self.put("my-sky", panorama, kind="environments")
+        self.assertEqual(status, 201, answer)
+        self.assertEqual(json.loads(answer), {"name": "my-sky", "bytes": len(panorama),
+                                              "width": 8, "height": 4})
+        self.assertIn("my-sky", [one["name"] for one in self.environments()])
+        self.assertNotIn("my-sky", self.catalogue())
+        self.server.call("environment.set", {"name": "my-sky"})
+        self.server.call("environment.set", {"name": None})
+        for name in ("my-sky", "studio"):
+            address = f"/api/v1/environments/{name}/thumbnail.png"
+            for headers in (BEARER, {"Authorization": "Bearer " + VIEW}):
+                status, sent, image = self.server.request("GET", address, None, headers)
+                self.assertEqual((status, sent["content-type"]), (200, "image/png"))
+                self.assertEqual(struct.unpack(">II", image[16:24]), (160, 80))
+        missing = self.server.request("GET", "/api/v1/environments/no/thumbnail.png")
+        self.assertEqual(missing[0], 404)
+        self.assertEqual(self.put("studio", panorama, kind="environments")[0], 409)
+
+    def test_invalid_environments_are_refused(self):
+        whole = RADIANCE_HEADER + b"-Y 4 +X 8\n" + bytes([80, 120, 200, 128]) * 32
+        exr = struct.pack("<I", 20000630) + b"\2\0\0\0" + b"x" * 50
+        for body in (self.mirror, whole[:-9], exr, b"#?RADIANCE\n\n-Y 9999 +X 9999\n" + b"x" * 90,
+                     RADIANCE_HEADER + b"-Y 0 +X 0\n"):
+            status, answer = self.put("broken", body, kind="environments")
+            self.assertEqual(status, 400, (body[:40], answer))
+            self.assertNotIn(self.folder.name, answer, "paths of the server are not revealed")
+        for name in ("../x", "a.hdr", "%2e%2e%2fx"):
+            self.assertIn(self.put(name, whole, kind="environments")[0], (400, 404), name)
+        self.assertEqual(self.put("sky2", whole, VIEW, "environments")[0], 403)
+        self.assertEqual(os.listdir(os.path.join(self.folder.name, "environments")), [])
         self.assertEqual(self.left_over(), [])
 
     def test_expect_100_continue(self):

@@ -20,7 +20,9 @@ class SessionRegistryTest : public testing::Test {
  protected:
   SessionRegistryTest() : registry_(limits(), named({}), open(), close()) {}
 
-  static RegistryLimits limits() { return {.sessions = 3, .viewers = 3, .pixels = 1000}; }
+  static RegistryLimits limits() {
+    return {.sessions = 3, .viewers = 3, .pixels = 1000, .followers = 1};
+  }
   static SessionOptions named(std::string name, std::uint32_t width = 20) {
     SessionOptions options;
     options.name = std::move(name);
@@ -147,6 +149,40 @@ TEST_F(SessionRegistryTest, AnEndedSessionReleasesItsPixels) {
   ASSERT_TRUE(registry_.close("a", ""));
   EXPECT_EQ(registry_.pixels_used(), 200u);
   EXPECT_EQ(closed_, std::vector<std::string>{"a"});
+}
+
+TEST_F(SessionRegistryTest, AViewWithItsOwnCameraEndsWhenItsViewerLeavesIt) {
+  const std::string viewer = enter("main");
+  const auto view = registry_.detach(viewer, named({}));
+  ASSERT_TRUE(view) << view.error().message;
+  EXPECT_EQ((*view)->follows(), "main");
+  EXPECT_EQ(registry_.session_of_viewer(viewer), *view);
+  EXPECT_EQ(registry_.detach(viewer, named({})).error().code, ErrorCode::conflict);
+  // It is the view of one viewer.
+  const std::string other = enter("main");
+  EXPECT_EQ(registry_.move(other, (*view)->name()).error().code, ErrorCode::not_found);
+  EXPECT_EQ(registry_.enter((*view)->name(), links_.back()).error().code, ErrorCode::not_found);
+  ASSERT_TRUE(registry_.move(viewer, "main"));
+  EXPECT_EQ(closed_, std::vector<std::string>{(*view)->name()});
+  const auto again = registry_.detach(viewer, named({}));
+  ASSERT_TRUE(again);
+  registry_.leave(viewer);
+  EXPECT_EQ(closed_.back(), (*again)->name());
+  EXPECT_EQ(registry_.count(), 1u);
+}
+
+TEST_F(SessionRegistryTest, ViewsOfASessionEndWithItAndAreLimited) {
+  ASSERT_TRUE(registry_.create(named("a")));
+  const std::string first = enter("a");
+  const std::string second = enter("a");
+  ASSERT_TRUE(registry_.detach(first, named({})));
+  const auto more = registry_.detach(second, named({}));
+  EXPECT_EQ(more.error().code, ErrorCode::full);
+  EXPECT_EQ(more.error().limit, "1 viewers");
+  EXPECT_EQ(registry_.session_of_viewer(second)->name(), "a") << "it stays where it was";
+  ASSERT_TRUE(registry_.close("a", "the end"));
+  EXPECT_EQ(registry_.count(), 1u);
+  EXPECT_EQ(links_.front()->close_reason, "the end");
 }
 
 TEST_F(SessionRegistryTest, CallsAreForTheViewersSessionOrTheNamedOne) {

@@ -117,6 +117,65 @@ TEST_F(SessionTest, ARefusedCameraSetChangesNothing) {
   EXPECT_EQ(*session_.camera().get(), *before);
 }
 
+class FollowingSession : public SessionTest {
+ protected:
+  FollowingSession() {
+    session_.scene().show(a_scene(), "");
+    SessionOptions options = SessionTest::options();
+    options.name = "view";
+    options.follows = "main";
+    follower_ = std::make_shared<Session>(options, std::make_shared<WakeEvent>());
+    Session::follow(follower_, session_);
+    EXPECT_TRUE(follower_->viewers().join("w", link_));
+    follower_->viewers().start("w");
+    link_->messages.clear();
+  }
+
+  std::vector<std::string> heard() const {
+    std::vector<std::string> methods;
+    for (const json& message : link_->messages) methods.push_back(message["method"]);
+    return methods;
+  }
+
+  std::shared_ptr<RecordingLink> link_ = std::make_shared<RecordingLink>();
+  std::shared_ptr<Session> follower_;
+};
+
+TEST_F(FollowingSession, BeginsWithTheCameraAndThenHasItsOwn) {
+  EXPECT_EQ(follower_->camera().get()->name, "near");
+  const std::uint64_t version = follower_->version();
+  ASSERT_TRUE(session_.camera().set({.eye = Vec3{5, 1, 2}}, ""));
+  EXPECT_EQ(follower_->camera().get()->eye, (Vec3{0, 0, 3}));
+  EXPECT_EQ(follower_->version(), version) << "nothing is to be rendered again";
+  EXPECT_TRUE(heard().empty());
+  ASSERT_TRUE(follower_->camera().set({.eye = Vec3{0, 4, 4}}, "w"));
+  EXPECT_EQ(session_.camera().get()->eye, (Vec3{5, 1, 2}));
+}
+
+TEST_F(FollowingSession, FollowsSettingsSceneAndTimeAndTellsItsViewers) {
+  ASSERT_TRUE(follower_->camera().set({.eye = Vec3{0, 4, 4}}, "w"));
+  const std::uint32_t rev = follower_->rev();
+  ASSERT_TRUE(
+      session_.patch_settings(protocol::RawJson(json{{"exposure", {{"compensation", 2.0}}}}), ""));
+  EXPECT_EQ(follower_->render_state().settings.exposure.compensation, 2.0f);
+  ASSERT_EQ(heard(), std::vector<std::string>{"settings.changed"});
+  EXPECT_EQ(link_->messages.back()["params"]["rev"], rev + 1) << "revisions are its own";
+  EXPECT_EQ(follower_->camera().get()->eye, (Vec3{0, 4, 4}));
+
+  LoadedScene other = a_scene();
+  other.name = "other";
+  session_.scene().show(std::move(other), "");
+  EXPECT_EQ(follower_->scene().info()->name, "other");
+  EXPECT_EQ(follower_->camera().get()->eye, (Vec3{0, 0, 3})) << "a new scene has a new camera";
+  EXPECT_EQ(heard().back(), "scene.changed");
+}
+
+TEST_F(FollowingSession, ItsSizeIsThatOfItsViewer) {
+  ASSERT_TRUE(follower_->configure_stream({.width = 320, .height = 200}, "w", true));
+  EXPECT_EQ(follower_->render_state().width, 320u);
+  EXPECT_EQ(session_.render_state().width, 640u);
+}
+
 TEST_F(SessionTest, EveryChangeIncrementsTheRevision) {
   session_.scene().show(a_scene(), "");
   const std::uint32_t first = session_.rev();

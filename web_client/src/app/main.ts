@@ -14,7 +14,7 @@ import { mountRefining } from "../overlay/refining.ts";
 import { mountStatus } from "../overlay/status.ts";
 import { Toasts } from "../overlay/toasts.ts";
 import { mountTransport } from "../overlay/transport.ts";
-import { mountUpload, uploadScene } from "../overlay/upload.ts";
+import { mountUpload, uploadFile } from "../overlay/upload.ts";
 import { mountPanel } from "../panel/panel.ts";
 import { mountThumbnails } from "../previews/thumbnails.ts";
 import { viewIn } from "../session/view_link.ts";
@@ -61,7 +61,7 @@ function main(): void {
     if (loading) toasts.settle("scene");
   });
   const navigation = new Navigation(canvas, {
-    camera: () => (viewer.hello && viewer.mayChange ? viewer.camera.value : null),
+    camera: () => (viewer.hello && viewer.membership.mayMove ? viewer.camera.value : null),
     sceneSize: () => viewer.sceneSize(),
     moved: (camera, recorded) => viewer.cameraMoves.moveTo(camera, recorded),
     fit: () => fit(),
@@ -69,14 +69,14 @@ function main(): void {
     focus: (x, y) => void focusAt(x, y),
   });
   const focusAt = async (x: number, y: number): Promise<void> => {
-    if (!viewer.mayChange) return;
+    if (!viewer.membership.mayMove) return;
     const pick = await viewer.queries.pick(x, y);
     const camera = viewer.camera.value;
     if (!camera || !pick?.position || pick.distance === null) return;
     navigation.goTo(focusOn(camera, pick.position, pick.distance * focusDistance));
   };
   const fit = (): void => {
-    if (viewer.mayChange && !viewer.restoring.value) void viewer.cameraMoves.fit();
+    if (viewer.membership.mayMove && !viewer.restoring.value) void viewer.cameraMoves.fit();
   };
   viewer.cameraMoves.place = (camera) => {
     const { left } = find("panel").getBoundingClientRect();
@@ -120,7 +120,7 @@ function main(): void {
       divider,
       picker: createPicker(canvas, find("mark")),
     },
-    upload: (file) => void uploadScene(viewer, file, toasts),
+    upload: (file) => void uploadFile(viewer, file, toasts),
     help: help.open,
     fullscreen: document.fullscreenEnabled ? toggleFullscreen : null,
   });
@@ -150,7 +150,9 @@ function main(): void {
   });
   panel.resolution.watch(() => viewer.stream.updateSize());
 
-  viewer.controlState.watch(({ kind }) => canvas.classList.toggle("locked", kind !== "may_change"));
+  viewer.membership.controlState.watch(() => {
+    canvas.classList.toggle("locked", !viewer.membership.mayMove);
+  });
   viewer.scene.watch((scene) => {
     document.title = scene ? `${scene.name} · Heliograph` : "Heliograph";
   });

@@ -32,16 +32,21 @@ export class Comparison {
     viewer.connection.state.watch(({ kind }) => {
       if (kind !== "live") this.stop();
     });
+    viewer.membership.controlState.watch(() => {
+      if (!this.possible) this.stop();
+    });
     viewer.scene.watch((scene) => this.sceneChanged(scene));
   }
 
   /** Whether server and browser support comparisons. */
   get possible(): boolean {
-    const { capabilities, controlState } = this.viewer;
+    const { capabilities, membership } = this.viewer;
     const hasOffscreenCanvas =
       typeof HTMLCanvasElement.prototype.transferControlToOffscreen === "function";
-    const mayCreate = controlState.value.kind !== "read_only" && capabilities.has("session.create");
-    return hasOffscreenCanvas && mayCreate && capabilities.has("session.close");
+    const { kind } = membership.controlState.value;
+    const mayCreate = kind !== "read_only" && kind !== "looks_around";
+    const canCreate = capabilities.has("session.create") && capabilities.has("session.close");
+    return hasOffscreenCanvas && mayCreate && canCreate;
   }
 
   async start(counterpart: Counterpart): Promise<void> {

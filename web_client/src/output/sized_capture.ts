@@ -37,7 +37,7 @@ export async function captureInSize(
   progress: (samples: number) => void,
 ): Promise<SizedImage> {
   const size = { width, height, idle_timeout: idleSeconds };
-  const params = { copy_of: viewer.hello?.session ?? "main", ...size };
+  const params = { copy_of: viewer.membership.name, ...size };
   const { name } = await viewer.rpc.request("session.create", params, createTimeoutMs);
   const figures = watchSamples(viewer, name, progress);
   try {
@@ -62,7 +62,7 @@ export async function captureWithoutBackground(
   { width, height, samples }: SizedCapture,
   signal: AbortSignal,
 ): Promise<SizedImage> {
-  const session = viewer.hello?.session ?? "main";
+  const session = viewer.membership.name;
   const url = viewer.connection.address.url(`api/v1/sessions/${session}/frame.png`);
   const parameters = { transparent: "1", width: String(width), height: String(height) };
   for (const [name, value] of Object.entries(parameters)) url.searchParams.set(name, value);

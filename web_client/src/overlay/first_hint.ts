@@ -22,6 +22,6 @@ export function mountFirstHint(viewer: Viewer, view: HTMLElement, root: HTMLElem
   root.append(element("p", {}, touch ? withFingers : withMouse), button("Close", "close", end));
   for (const event of movements) view.addEventListener(event, end, { passive: true });
   viewer.frame.watch((frame) => {
-    root.hidden = !frame || !viewer.mayChange || root.childElementCount === 0;
+    root.hidden = !frame || !viewer.membership.mayMove || root.childElementCount === 0;
   });
 }

@@ -1,6 +1,6 @@
 // The viewers of the session and who controls it: a card that opens from a button beside the pill.
 
-import type { ViewerInfo } from "heliograph/messages.ts";
+import type { SessionInfo, ViewerInfo } from "heliograph/messages.ts";
 import { copyText } from "../common/clipboard.ts";
 import { participantName, setParticipantName } from "../common/preferences.ts";
 import { viewerName } from "../session/control_state.ts";
@@ -30,6 +30,7 @@ export function mountParticipants(
   own.value = participantName() ?? "";
   const mode = element("button", { type: "button", class: "button quiet" });
   const change = element("button", { type: "button", class: "button quiet" });
+  const camera = element("button", { type: "button", class: "button quiet" });
   const explanation = element("p", { class: "facts" });
   const invite = element(
     "button",
@@ -53,6 +54,7 @@ export function mountParticipants(
     list,
     own,
     invite,
+    camera,
     mode,
     change,
   );
@@ -85,8 +87,14 @@ export function mountParticipants(
   root.append(opener, card);
 
   mode.addEventListener("click", () => {
-    const exclusive = viewer.session.value?.control === "exclusive";
-    void viewer.setControl({ mode: exclusive ? "shared" : "exclusive" });
+    const exclusive = viewer.membership.session.value?.control === "exclusive";
+    void viewer.membership.setControl({ mode: exclusive ? "shared" : "exclusive" });
+  });
+  camera.addEventListener("click", () => {
+    open(false);
+    opener.focus();
+    const { membership } = viewer;
+    void (membership.looksAround ? membership.followAgain() : membership.lookAround());
   });
   change.addEventListener("click", () => {
     open(false);
@@ -96,41 +104,51 @@ export function mountParticipants(
   // Without a connection the list is out of date.
   const updateVisibility = (): void => {
     const { kind } = viewer.connection.state.value;
-    root.hidden = viewer.session.value === null || (kind !== "live" && kind !== "connecting");
+    root.hidden = viewer.membership.session.value === null || (kind !== "live" && kind !== "connecting");
   };
   viewer.connection.state.watch(updateVisibility);
   const update = (): void => {
     updateVisibility();
-    const session = viewer.session.value;
+    const session = viewer.membership.session.value;
     if (!session) return;
     const me = session.viewers.find(({ you }) => you);
     setText(count, String(session.viewers.length));
     opener.setAttribute("aria-label", `Participants: ${session.viewers.length}`);
     const isOwn = viewer.own.shared.value !== null;
     const others = session.viewers.length - 1;
-    setText(sessionName, isOwn ? "Your own session" : `Shared session ${session.name}`);
-    setText(explanation, describeSession(isOwn, others));
+    const { looksAround } = viewer.membership;
+    setText(sessionName, nameOfSession(session, isOwn));
+    setText(
+      explanation,
+      looksAround
+        ? "Only you see this camera. Everything else follows the shared session."
+        : describeSession(isOwn, others),
+    );
+    invite.hidden = own.hidden = list.hidden = looksAround;
+    setText(camera, looksAround ? "Follow again" : "Look around on my own");
+    const alone = isOwn && others === 0;
+    camera.hidden = !looksAround && (alone || !viewer.capabilities.has("session.detach"));
     setText(change, isOwn ? "Join the shared session" : "Open a copy of your own");
-    change.hidden = !isOwn && !viewer.mayCreateSessions;
+    change.hidden = looksAround || (!isOwn && !viewer.mayCreateSessions);
     const exclusive = session.control === "exclusive";
     setText(mode, exclusive ? "Share control with all viewers" : "Take exclusive control");
-    mode.hidden = !me?.control;
+    mode.hidden = looksAround || !me?.control;
     const claimed = session.viewers.some(({ control }) => control);
     list.replaceChildren(
       ...session.viewers.map((participant, index) => participantLine(participant, index)),
-      ...(exclusive && !claimed && viewer.controlState.value.kind !== "read_only"
+      ...(exclusive && !claimed && viewer.membership.controlState.value.kind !== "read_only"
         ? [takeLine()]
         : []),
     );
   };
   /** What each viewer did last, by its id. */
   const deeds = new Map<string, string>();
-  viewer.controlState.watch(({ kind }) => {
+  viewer.membership.controlState.watch(({ kind }) => {
     opener.classList.toggle("without-control", kind !== "may_change");
   });
 
   const participantLine = (participant: ViewerInfo, index: number): HTMLElement => {
-    const session = viewer.session.value;
+    const session = viewer.membership.session.value;
     const me = session?.viewers.find(({ you }) => you);
     const name = viewerName(participant, index);
     const inControl = session?.control === "exclusive" && participant.control;
@@ -149,13 +167,13 @@ export function mountParticipants(
         ? button(
             `Hand over to ${name}`,
             "target",
-            () => void viewer.setControl({ action: "give", viewer: participant.viewer }),
+            () => void viewer.membership.setControl({ action: "give", viewer: participant.viewer }),
           )
         : null,
     );
   };
   const takeLine = (): HTMLElement => element("li", {}, createTakeControlButton(viewer));
-  viewer.session.watch(update);
+  viewer.membership.session.watch(update);
   viewer.own.shared.watch(update);
   viewer.capabilities.methods.watch(update);
   viewer.activity.watch((activity) => {
@@ -164,6 +182,11 @@ export function mountParticipants(
     const shown = list.querySelector(`[data-viewer="${activity.viewer}"] .deed`);
     if (shown) setText(shown, activity.deed);
   });
+}
+
+function nameOfSession({ name, follows }: SessionInfo, isOwn: boolean): string {
+  if (follows !== undefined) return `Your own view of the session ${follows}`;
+  return isOwn ? "Your own session" : `Shared session ${name}`;
 }
 
 function describeSession(isOwn: boolean, others: number): string {

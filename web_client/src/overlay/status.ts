@@ -30,11 +30,11 @@ export function mountStatus(viewer: Viewer, pill: HTMLElement, card: HTMLElement
     const state = viewer.connection.state.value;
     pill.dataset.state = state.kind;
     const own = viewer.own.shared.value !== null;
-    setText(pillText, pillLabel(state, viewer.controlState.value, own));
+    setText(pillText, pillLabel(state, viewer.membership.controlState.value, own));
     view.show(noticeFor(viewer, state));
   };
   viewer.connection.state.watch(update);
-  viewer.controlState.watch(update);
+  viewer.membership.controlState.watch(update);
   viewer.own.shared.watch(update);
   viewer.loading.current.watch(update);
   viewer.restoring.watch(update);
@@ -76,6 +76,8 @@ function liveLabel(controlState: ControlState): string {
       return "Live";
     case "read_only":
       return "Live, view only";
+    case "looks_around":
+      return "Live, looking around";
     case "other":
       return `Live, ${controlState.name} is in control`;
     case "unclaimed":
@@ -136,7 +138,9 @@ function liveNotice(viewer: Viewer): Notice | null {
       ? { title: "No scene loaded", detail: "Choose a scene in the panel.", dims: false }
       : {
           title: "No scenes found",
-          detail: "Put .glb or .gltf files into the scene folder of the server.",
+          detail: viewer.hello?.limits.max_upload_bytes
+            ? "Drop a .glb file here, or choose one with Upload in the panel."
+            : "Put .glb or .gltf files into the scene folder of the server.",
           action: { label: "Refresh", run: () => void viewer.refreshScenes() },
           dims: false,
         };
@@ -152,7 +156,7 @@ function liveNotice(viewer: Viewer): Notice | null {
 function loadingNotice(viewer: Viewer, loading: Loading): Notice {
   const { kind, name, stage, fraction, by } = loading;
   const isScene = kind === "scene" && stage !== firstFrameStage;
-  const viewers = viewer.session.value?.viewers ?? [];
+  const viewers = viewer.membership.session.value?.viewers ?? [];
   const author = viewers.findIndex((one) => one.viewer === by && !one.you);
   const other = viewers[author];
   const detail = stage === firstFrameStage ? "Rendering the first frame" : humanise(stage);

@@ -1,4 +1,4 @@
-// Uploads a scene file that was dropped on the page or chosen, and loads it.
+// Uploads a scene or an environment that was dropped on the page or chosen, and shows it.
 
 import { type FileError, describeFileError } from "../session/file_errors.ts";
 import { describeControl } from "../session/control_state.ts";
@@ -17,7 +17,7 @@ export function mountUpload(viewer: Viewer, root: HTMLElement, toasts: Toasts): 
     event.dataTransfer?.types.includes("Files") ?? false;
   addEventListener("dragenter", (event) => {
     if (!carriesFile(event) || !viewer.hello) return;
-    setText(text, uploadError(viewer) ?? "Drop a .glb file to load it");
+    setText(text, uploadError(viewer) ?? "Drop a scene (.glb) or an environment (.hdr, .exr) to show it");
     veil.hidden = false;
   });
   addEventListener("dragover", (event) => {
@@ -31,26 +31,31 @@ export function mountUpload(viewer: Viewer, root: HTMLElement, toasts: Toasts): 
     event.preventDefault();
     veil.hidden = true;
     const file = event.dataTransfer?.files[0];
-    if (file) void uploadScene(viewer, file, toasts);
+    if (file) void uploadFile(viewer, file, toasts);
   });
 }
 
-/** Uploads a scene file and loads it; shows why if it cannot. */
-export async function uploadScene(viewer: Viewer, file: File, toasts: Toasts): Promise<void> {
+/** Uploads a file and shows it; tells why if it cannot. */
+export async function uploadFile(viewer: Viewer, file: File, toasts: Toasts): Promise<void> {
   const error = uploadError(viewer) ?? fileError(viewer, file);
   if (error) {
     toasts.show(error);
     return;
   }
-  const name = sceneName(file.name);
+  const name = nameOf(file.name);
+  const kind = kindOf(file.name);
   const by = viewer.hello?.viewer ?? "";
   try {
-    const url = viewer.connection.address.url(`api/v1/scenes/${name}`);
+    const url = viewer.connection.address.url(`api/v1/${kind}s/${name}`);
     await upload(url, file, (fraction) => {
-      viewer.loading.start({ kind: "scene", name, stage: "uploading", fraction, by });
+      viewer.loading.start({ kind, name, stage: "uploading", fraction, by });
     });
-    await viewer.refreshScenes();
-    await viewer.loading.load(name);
+    if (kind === "environment") {
+      await viewer.parts.showUploadedEnvironment(name);
+    } else {
+      await viewer.refreshScenes();
+      await viewer.loading.load(name);
+    }
   } catch (error) {
     viewer.loading.end();
     toasts.show((error as Error).message, {
@@ -73,14 +78,14 @@ class UploadError extends Error {
 function uploadError(viewer: Viewer): string | null {
   const { hello } = viewer;
   if (!hello) return "There is no connection to the server";
-  if (!viewer.mayChange) return describeControl(viewer.controlState.value);
+  if (!viewer.mayChange) return describeControl(viewer.membership.controlState.value);
   return hello.limits.max_upload_bytes === 0 ? uploadsDisabled : null;
 }
 
 /** Why this file cannot be uploaded, as far as is known before sending it. */
 function fileError(viewer: Viewer, file: File): string | null {
-  if (!file.name.toLowerCase().endsWith(".glb")) {
-    return "Only .glb files can be uploaded: they contain all buffers and images";
+  if (!/\.(glb|hdr|exr)$/i.test(file.name)) {
+    return "Only .glb files, which contain all buffers and images, and environments (.hdr, .exr) can be uploaded";
   }
   const limit = viewer.hello?.limits.max_upload_bytes ?? Infinity;
   if (file.size > limit) {
@@ -95,11 +100,14 @@ function formatSize(bytes: number): string {
   return `${size.toFixed(size < 10 ? 1 : 0)} ${unit}`;
 }
 
-/** "My model (1).glb" -> "My_model_1": a valid scene name. */
-export function sceneName(file: string): string {
+const kindOf = (file: string): "scene" | "environment" =>
+  /\.glb$/i.test(file) ? "scene" : "environment";
+
+/** "My model (1).glb" -> "My_model_1": a valid name for the server. */
+export function nameOf(file: string): string {
   const stem = file.replace(/\.[^.]*$/, "");
   const name = stem.replace(/[^A-Za-z0-9-]+/g, "_").replace(/^[_-]+|[_-]+$/g, "");
-  return name.slice(0, 64) || "scene";
+  return name.slice(0, 64) || kindOf(file);
 }
 
 /** Rejects with a sentence for the user. XMLHttpRequest, because fetch reports no progress. */
@@ -129,7 +137,7 @@ function rejection(file: string, status: number, text: string): FileError {
     case 405:
       return plain(uploadsDisabled);
     case 409:
-      return plain(`The server has its own scene ${sceneName(file)}: rename the file.`);
+      return plain(`The server has its own ${kindOf(file)} ${nameOf(file)}: rename the file.`);
     case 413:
       return plain(`${file} is larger than the server accepts.`);
     default:

@@ -8,16 +8,26 @@ import { createTakeControlButton } from "../widgets/take_control_button.ts";
 export function createControlNote(viewer: Viewer): HTMLElement {
   const text = element("p");
   const take = createTakeControlButton(viewer);
-  const body = element("div", {}, text, take);
+  const follow = element(
+    "button",
+    {
+      type: "button",
+      class: "button quiet",
+      click: () => void viewer.membership.followAgain(),
+    },
+    "Follow again",
+  );
+  const body = element("div", {}, text, take, follow);
   const note = element(
     "div",
     { class: "control-note", role: "status" },
     icon("participants"),
     body,
   );
-  viewer.controlState.watch((controlState) => {
+  viewer.membership.controlState.watch((controlState) => {
     note.hidden = controlState.kind === "may_change";
     take.hidden = controlState.kind !== "unclaimed";
+    follow.hidden = controlState.kind !== "looks_around";
     setText(text, describeControl(controlState));
   });
   return note;

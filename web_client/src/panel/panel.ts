@@ -39,7 +39,7 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
     { id: "scene", label: "Scene", icon: "scene", body: createSceneTab(viewer, actions.upload) },
     {
       id: "settings",
-      label: "Settings",
+      label: "Advanced",
       icon: "sliders",
       body: createSettingsTab(viewer, [...appearanceGroups, bufferSetting], (id) =>
         tabs.select(id),
@@ -53,7 +53,7 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
     },
     { id: "timing", label: "Timing", icon: "chart", body: createTimingTab(viewer, stream.node) },
   ]);
-  viewer.controlState.watch(({ kind }) => {
+  viewer.membership.controlState.watch(({ kind }) => {
     // While all controls are disabled, the panel itself takes the focus, so that keys scroll it.
     if (kind === "may_change") tabs.pages.removeAttribute("tabindex");
     else tabs.pages.tabIndex = 0;

@@ -12,7 +12,7 @@ export function createUndoButtons(viewer: Viewer): HTMLButtonElement[] {
     describe(redo, "Redo", "Ctrl Shift Z", next.redo, viewer.mayChange);
   };
   viewer.history.next.watch(update);
-  viewer.controlState.watch(update);
+  viewer.membership.controlState.watch(update);
   return [undo, redo];
 }
 

@@ -63,14 +63,14 @@ export class ScenePreviews {
     if (document.hidden || !viewer.hello || busy || !viewer.frame.value?.final) return false;
     if (
       !viewer.capabilities.has("session.create") ||
-      viewer.controlState.value.kind === "read_only"
+      viewer.membership.controlState.value.kind === "read_only"
     ) {
       this.active = false;
       return false;
     }
     try {
       const { sessions } = await viewer.rpc.request("session.list");
-      const own = viewer.hello?.session;
+      const own = viewer.membership.name;
       return sessions.every(({ name, viewers }) => name === own || viewers.length === 0);
     } catch {
       return false; // the connection is lost; the next one tries again

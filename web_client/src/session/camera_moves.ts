@@ -14,6 +14,8 @@ interface CameraMovesHost {
   scene: Signal<SceneInfo | null>;
   latency: LatencyMeter;
   history: UndoHistory;
+  /** Whether movements are steps of the history: not those of a camera of one's own. */
+  records(): boolean;
   /** The user has moved the camera; `seq` numbers the message to the server. */
   moved(camera: CameraPose, seq: number): void;
   attempt(action: () => Promise<unknown>): Promise<void>;
@@ -80,7 +82,7 @@ export class CameraMoves {
 
   private remember(camera: CameraPose): void {
     const before = this.host.camera.value;
-    if (!before) return;
+    if (!before || !this.host.records()) return;
     this.host.history.add({
       label: "camera",
       key: "camera",

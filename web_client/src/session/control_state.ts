@@ -6,6 +6,8 @@ export type ControlState =
   | { kind: "may_change" }
   /** The access token is read-only. */
   | { kind: "read_only" }
+  /** The camera is this page's own; everything else follows a session. */
+  | { kind: "looks_around" }
   /** Another viewer has exclusive control. */
   | { kind: "other"; name: string }
   /** Control is exclusive, and no viewer has it. */
@@ -15,6 +17,7 @@ export function controlStateOf(
   session: SessionInfo | null,
   role: Hello["role"] | undefined,
 ): ControlState {
+  if (session?.follows) return { kind: "looks_around" };
   if (role === "view") return { kind: "read_only" };
   const me = session?.viewers.find(({ you }) => you);
   if (!session || !me || me.control) return { kind: "may_change" };
@@ -31,6 +34,8 @@ export function describeControl(state: ControlState): string {
       return "";
     case "read_only":
       return "View only: you can't change anything.";
+    case "looks_around":
+      return "You look around on your own. Everything else follows the shared session.";
     case "other":
       return `${state.name} is in control and can hand it over to you.`;
     case "unclaimed":

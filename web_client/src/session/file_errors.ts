@@ -1,4 +1,4 @@
-// Why a scene file cannot be shown, in the words of someone who has the file, not of its format.
+// Why a scene or an environment cannot be shown, in the words of someone who has the file, not of its format.
 
 import { ErrorCode } from "heliograph/messages.ts";
 import { RpcError } from "heliograph/rpc.ts";
@@ -15,6 +15,8 @@ const meanings: [pattern: RegExp, meaning: string][] = [
     "is incomplete: the file ends early",
   ],
   [/the file is empty/, "is empty"],
+  [/is a cube map/, "is a cube map; environments are panoramas of 360 x 180 degrees"],
+  [/not a Radiance|format other than/, "is not an environment in the format .hdr or .exr"],
   [/is missing|does not exist/, "needs another file that is not there"],
   [/outside the scene's folder/, "needs a file outside its folder, which is not allowed"],
   [/not a glTF file|not begin with|not a binary glTF/, "is not a glTF file"],

@@ -95,6 +95,12 @@ export class SceneParts {
     void this.setEnvironment(name);
   }
 
+  /** Its file may have replaced one that is shown. */
+  async showUploadedEnvironment(name: string): Promise<void> {
+    if (this.environment.value?.current === name) await this.setEnvironment(name);
+    else this.chooseEnvironment(name);
+  }
+
   private async setEnvironment(name: string | null): Promise<void> {
     const { loading, rpc } = this.host;
     const shown = name ?? "the scene's environment";

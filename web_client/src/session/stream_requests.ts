@@ -74,6 +74,12 @@ export class StreamRequests {
     void this.configure(change);
   }
 
+  /** In another session the size is to be requested again. */
+  sessionChanged(): void {
+    this.sentSize = null;
+    this.updateSize();
+  }
+
   /** Requests another frame size if the view, the screen or the choice has changed. */
   updateSize(): void {
     void this.configure(this.size());

@@ -8,7 +8,6 @@ import {
   type Hello,
   type SceneInfo,
   type SceneList,
-  type SessionControlParams,
   type SessionInfo,
   ErrorCode,
 } from "heliograph/messages.ts";
@@ -18,14 +17,13 @@ import { Signal } from "../common/signal.ts";
 import { length, subtract } from "../common/vector.ts";
 import { CanvasPainter } from "../stream/canvas_painter.ts";
 import { Connection } from "../stream/connection.ts";
-import { LatencyMeter } from "../stream/latency.ts";
-import { RateMeter } from "../stream/rates.ts";
+import { FrameMeters } from "../stream/frame_meters.ts";
 import { type DrawnFrame, clockMs } from "../stream/worker_messages.ts";
 import { type Activity, activityOf } from "./activity.ts";
-import { type ControlState, controlStateOf } from "./control_state.ts";
 import { CameraMoves } from "./camera_moves.ts";
 import type { FileError } from "./file_errors.ts";
 import { FrameQueries } from "./frame_queries.ts";
+import { Membership } from "./membership.ts";
 import { receiveNotification } from "./notifications.ts";
 import { OwnSession } from "./own_session.ts";
 import { SceneLoading } from "./scene_loading.ts";
@@ -54,26 +52,17 @@ export class Viewer {
   readonly history = new UndoHistory();
   readonly loading: SceneLoading;
   readonly cameraMoves: CameraMoves;
+  readonly membership: Membership;
   readonly scenes = new Signal<SceneList>({ scenes: [], current: null });
   readonly scene = new Signal<SceneInfo | null>(null);
   readonly restoring: Signal<boolean>;
   readonly camera = new Signal<CameraPose | null>(null);
   readonly animation = new Signal<AnimationState | null>(null);
-  /** The session and its viewers; null where the server does not tell. */
-  readonly session = new Signal<SessionInfo | null>(null);
-  /** Whether this page may change the session. */
-  readonly controlState = new Signal<ControlState>({ kind: "may_change" });
   /** What another viewer has changed last. */
   readonly activity = new Signal<Activity | null>(null);
   readonly stats = new Signal<FrameStats | null>(null);
   readonly frame = new Signal<DrawnFrame | null>(null);
-  /** From an input to the first frame of the server that shows it. */
-  readonly latency = new LatencyMeter();
-  /** From an input to the first image that shows it: a frame, or one that was reprojected. */
-  readonly responses = new LatencyMeter();
-  readonly rates = new RateMeter();
-  /** Of all images that are shown. */
-  readonly shownRates = new RateMeter();
+  readonly meters = new FrameMeters();
   /** Where a point of the view lies in the frame, both in fractions of width and height. */
   inFrame: (x: number, y: number) => { x: number; y: number } = (x, y) => ({ x, y });
   /** Shows an error as one sentence. */
@@ -88,8 +77,6 @@ export class Viewer {
   addBookmark: () => void = () => {};
   private animationReadAt = 0;
   private animationRev = 0;
-  /** Of the newest camera that a reprojected image has shown. */
-  private predictedSeq = 0;
   /** From the arrival of the server's hello until the connection is lost. */
   private receivedHello: Hello | null = null;
   readonly viewRestore: ViewRestore;
@@ -108,11 +95,7 @@ export class Viewer {
       notification: (method, params) => this.notified(method, params),
       drawn: (frame) => this.frameDrawn(frame),
       draw: (image, frame) => painter?.draw(image, frame.width, frame.height),
-      predicted: (seq, drawnAt) => {
-        this.predictedSeq = seq;
-        this.shownRates.add(drawnAt, 0);
-        this.responses.frameDrawn(seq, drawnAt);
-      },
+      predicted: (seq, drawnAt) => this.meters.predicted(seq, drawnAt),
       cannotPredict: () => this.stream.request({ depth: false }),
       warning: (message) => this.onError(message),
       decodeFailed: (message, video) => {
@@ -121,6 +104,17 @@ export class Viewer {
       },
     });
     this.rpc = this.connection.rpc;
+    this.membership = new Membership({
+      rpc: this.rpc,
+      hello: () => this.receivedHello,
+      changed: (session) => {
+        if (!this.membership.mayMove) this.connection.predict(null);
+        this.stream.onFrameSize(session);
+        this.stream.updateSize();
+      },
+      moved: () => this.sessionMoved(),
+      attempt: (action) => this.attempt(action),
+    });
     this.own = new OwnSession({
       address: this.connection.address,
       current: () => this.receivedHello?.session ?? null,
@@ -143,14 +137,15 @@ export class Viewer {
     this.cameraMoves = new CameraMoves({
       rpc: this.rpc,
       camera: this.camera,
+      records: () => this.mayChange,
       scene: this.scene,
-      latency: this.latency,
+      latency: this.meters.latency,
       history: this.history,
       moved: (camera, seq) => {
         if (this.viewRestore.pending) this.viewRestore.pending.camera = camera;
         const { eye, target, up, vertical_fov } = camera;
         this.connection.predict({ eye, target, up, vertical_fov, seq });
-        this.responses.inputSent(seq, clockMs());
+        this.meters.responses.inputSent(seq, clockMs());
       },
       attempt: (action) => this.attempt(action),
     });
@@ -187,7 +182,7 @@ export class Viewer {
       rpc: this.rpc,
       settings: this.settings,
       capabilities: this.capabilities,
-      controlState: this.controlState,
+      controlState: this.membership.controlState,
       hello: () => this.receivedHello,
       ownsSession: (hello) =>
         this.own.name === hello.session || this.sessionRestore.ownsSession(hello),
@@ -201,7 +196,7 @@ export class Viewer {
     });
     this.restoring = this.viewRestore.running;
     this.stream = new StreamRequests(this.rpc, {
-      mayResize: () => this.mayChange,
+      mayResize: () => this.membership.mayMove,
       report: (error) => this.report(error),
       inform: (sentence) => this.onInfo(sentence),
     });
@@ -223,7 +218,7 @@ export class Viewer {
   }
 
   get mayChange(): boolean {
-    return this.controlState.value.kind === "may_change";
+    return this.membership.mayChange;
   }
 
   get mayCreateSessions(): boolean {
@@ -283,13 +278,6 @@ export class Viewer {
     });
   }
 
-  /** Takes or passes on control of the session, or changes its mode. */
-  async setControl(params: SessionControlParams): Promise<void> {
-    await this.attempt(async () => {
-      this.setSession(await this.rpc.request("session.control", params));
-    });
-  }
-
   report(error: unknown): void {
     if (error instanceof ChannelClosed) return;
     this.onError(error instanceof RpcError ? error.sentence : (error as Error).message);
@@ -297,12 +285,10 @@ export class Viewer {
 
   private async becomeLive(hello: Hello): Promise<void> {
     this.receivedHello = hello;
-    this.latency.reset();
-    this.responses.reset();
-    this.predictedSeq = 0;
+    this.meters.reset();
     this.cameraMoves.reset();
     this.animationRev = 0;
-    await this.readSession();
+    await this.membership.read();
     // The server refuses to close it while other viewers are in it.
     const abandoned = this.own.takeAbandoned();
     if (abandoned !== null) this.rpc.notify("session.close", { session: abandoned });
@@ -351,24 +337,17 @@ export class Viewer {
     }
   }
 
-  /** Does nothing where the server has no sessions. */
-  private async readSession(): Promise<void> {
-    try {
-      this.setSession(await this.rpc.request("session.info"));
-    } catch (error) {
-      if (error instanceof ChannelClosed) throw error;
-    }
+  setSession(session: SessionInfo): void {
+    this.membership.take(session);
   }
 
-  /** All viewers get the same list; hello told which entry is this page. */
-  setSession(session: SessionInfo): void {
-    const own = this.receivedHello?.viewer;
-    const viewers = session.viewers.map((viewer) => ({ ...viewer, you: viewer.viewer === own }));
-    this.session.set({ ...session, viewers });
-    this.controlState.set(controlStateOf(this.session.value, this.receivedHello?.role));
-    if (!this.mayChange) this.connection.predict(null);
-    this.stream.onFrameSize(session);
-    this.stream.updateSize();
+  /** The session that the page is in now has another camera, and counts its own revisions. */
+  private async sessionMoved(): Promise<void> {
+    this.connection.predict(null);
+    this.animationRev = 0;
+    this.loading.reset();
+    this.stream.sessionChanged();
+    await this.readScene();
   }
 
   async sceneChanged(info: SceneInfo): Promise<void> {
@@ -381,11 +360,7 @@ export class Viewer {
   }
 
   private frameDrawn(frame: DrawnFrame): void {
-    this.rates.add(frame.drawnAt, frame.bytes);
-    // Frames that are behind the camera have been counted as they were reprojected.
-    if (frame.inputSeqEcho >= this.predictedSeq) this.shownRates.add(frame.drawnAt, 0);
-    this.latency.frameDrawn(frame.inputSeqEcho, frame.drawnAt);
-    this.responses.frameDrawn(frame.inputSeqEcho, frame.drawnAt);
+    this.meters.frameDrawn(frame);
     if (frame.codec === Codec.h264) this.stream.onVideoFrame();
     this.loading.frameDrawn(frame.stateRev);
     this.frame.set(frame);
@@ -399,7 +374,8 @@ export class Viewer {
   }
 
   private notified(method: string, params: unknown): void {
-    const activity = activityOf(method, params, this.session.value, this.settings.schema.value);
+    const { session } = this.membership;
+    const activity = activityOf(method, params, session.value, this.settings.schema.value);
     if (activity) this.activity.set(activity);
     receiveNotification(this, method, params);
   }

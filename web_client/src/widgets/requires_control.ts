@@ -6,7 +6,7 @@ import { element } from "./element.ts";
 /** Wraps controls that are disabled while this page may not change the session. */
 export function requiresControl(viewer: Viewer, ...controls: HTMLElement[]): HTMLFieldSetElement {
   const set = element("fieldset", { class: "requires-control" }, ...controls);
-  viewer.controlState.watch(({ kind }) => {
+  viewer.membership.controlState.watch(({ kind }) => {
     set.disabled = kind !== "may_change";
     for (const node of set.querySelectorAll("[role=slider]")) {
       node.setAttribute("aria-disabled", String(set.disabled));

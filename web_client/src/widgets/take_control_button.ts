@@ -8,7 +8,7 @@ export function createTakeControlButton(viewer: Viewer): HTMLButtonElement {
     {
       type: "button",
       class: "button quiet",
-      click: () => void viewer.setControl({ action: "take" }),
+      click: () => void viewer.membership.setControl({ action: "take" }),
     },
     "Take control",
   );

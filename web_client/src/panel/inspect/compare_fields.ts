@@ -123,7 +123,7 @@ export function createCompareFields(
     node.hidden = !comparison.possible;
   };
   viewer.capabilities.methods.watch(updateVisibility);
-  viewer.controlState.watch(updateVisibility);
+  viewer.membership.controlState.watch(updateVisibility);
   return node;
 }
 

@@ -5,6 +5,7 @@ import { ScenePreviews } from "../../previews/scene_previews.ts";
 import type { Viewer } from "../../session/viewer.ts";
 import { button, element, setOptions } from "../../widgets/element.ts";
 import { field } from "../../widgets/field.ts";
+import { createFileButton } from "../../widgets/file_button.ts";
 import { createSceneGallery } from "./scene_gallery.ts";
 
 export function createScenePicker(viewer: Viewer, upload: (file: File) => void): HTMLElement[] {
@@ -18,28 +19,13 @@ export function createScenePicker(viewer: Viewer, upload: (file: File) => void):
   });
   toggle.setAttribute("aria-expanded", "false");
   toggle.setAttribute("aria-controls", gallery.id);
-  return [field("Scene", sceneList(viewer), toggle, fileButton(viewer, upload)), gallery];
-}
-
-/** An alternative to dropping a file; hidden where the server does not accept uploads. */
-function fileButton(viewer: Viewer, upload: (file: File) => void): HTMLElement {
-  const input = element("input", {
-    type: "file",
+  const file = createFileButton(viewer, {
+    label: "Upload",
+    tip: "Upload a scene file (.glb)",
     accept: ".glb",
-    hidden: true,
-    change: () => {
-      const file = input.files?.[0];
-      if (file) upload(file);
-      input.value = "";
-    },
+    upload,
   });
-  const opener = button("Upload", "upload", () => input.click());
-  opener.dataset.tip = "Upload a scene file (.glb)";
-  opener.hidden = true;
-  viewer.connection.state.watch((state) => {
-    if (state.kind === "live") opener.hidden = !state.hello.limits.max_upload_bytes;
-  });
-  return element("span", { class: "file-button" }, opener, input);
+  return [field("Scene", sceneList(viewer), toggle, file), gallery];
 }
 
 function sceneList(viewer: Viewer): HTMLSelectElement {

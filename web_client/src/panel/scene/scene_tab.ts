@@ -36,7 +36,7 @@ export function createSceneTab(viewer: Viewer, upload: (file: File) => void): HT
       warnings,
       ...createPartFields(viewer),
       ...createCameraFields(viewer),
-      createEnvironmentField(viewer.parts),
+      ...createEnvironmentField(viewer, upload),
     ),
     createLightSection(viewer.parts),
     appearance,

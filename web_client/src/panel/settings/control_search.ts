@@ -1,66 +1,99 @@
-// Finds controls of the other tabs: the search of the Settings tab covers the whole panel.
+// Finds controls of the whole page, which the search of the Advanced tab covers: rows and buttons of
+// the tabs, and what stands outside them.
 
 import { element, icon } from "../../widgets/element.ts";
 
 const highlightMs = 1600;
+const rowSelector = ".row, .field, .fields > .row-line";
+const outsideSelector = [
+  "#panel > header button",
+  "#top-left > div > button",
+  "#transport button",
+  "#transport select",
+  "#transport input",
+].join();
 
-/** Lists the controls whose labels contain all words. Returns their number. */
+/** Lists the controls whose texts contain all words. Returns their number. */
 export function findControls(
   list: HTMLElement,
   typed: string,
   showTab: (id: string) => void,
 ): number {
   const words = typed.toLowerCase().split(/\s+/).filter(Boolean);
-  const tab = list.closest("[data-tab]");
-  const pages = [...(tab?.parentElement?.querySelectorAll("[data-tab]") ?? [])];
   const found =
     words.length === 0
       ? []
-      : pages
-          .filter((page) => page !== tab)
-          .flatMap((page) => [...page.querySelectorAll<HTMLElement>(".row, .field")])
-          .filter((row) => isOffered(row) && words.every((word) => textOf(row).includes(word)));
+      : allControls(list).filter((control) => {
+          const text = textOf(control);
+          return isOffered(control) && words.every((word) => text.includes(word));
+        });
   list.hidden = found.length === 0;
-  list.replaceChildren(...found.map((row) => resultFor(row, showTab)));
+  list.replaceChildren(...found.map((control) => resultFor(control, showTab)));
   return found.length;
 }
 
-const labelOf = (row: HTMLElement): string =>
-  row.querySelector("label, .row-label")?.textContent?.trim() ?? "";
-
-const titleOf = (row: HTMLElement): string =>
-  row.closest(".section")?.querySelector("h2")?.textContent ?? "";
-
-function textOf(row: HTMLElement): string {
-  const { tip, path } = row.dataset;
-  return `${labelOf(row)} ${titleOf(row)} ${tip ?? ""} ${path ?? ""}`.toLowerCase();
+/** All but the settings that the search filters where they are, and the list of results. */
+function allControls(list: HTMLElement): HTMLElement[] {
+  const own = list.closest("[data-tab]");
+  const pages = [...(own?.parentElement?.querySelectorAll("[data-tab]") ?? [])];
+  const inside = pages.flatMap((page) => {
+    const buttons = [...page.querySelectorAll<HTMLElement>("button:not(.found)")];
+    const alone = buttons.filter((node) => !node.closest(rowSelector));
+    return page === own ? alone : [...page.querySelectorAll<HTMLElement>(rowSelector), ...alone];
+  });
+  return [...inside, ...document.querySelectorAll<HTMLElement>(outsideSelector)];
 }
 
-/** Whether the control exists for this scene; its tab may be hidden. */
-function isOffered(row: HTMLElement): boolean {
-  const hidden = row.closest("[hidden]");
-  return labelOf(row) !== "" && (hidden === null || hidden.matches("[data-tab]"));
+function labelOf(control: HTMLElement): string {
+  const label = control.querySelector("label, .row-label");
+  return (label?.textContent ?? control.getAttribute("aria-label") ?? control.textContent ?? "").trim();
 }
 
-function resultFor(row: HTMLElement, showTab: (id: string) => void): HTMLElement {
-  const tab = row.closest<HTMLElement>("[data-tab]")?.dataset.tab ?? "";
-  const place = [document.getElementById(`tab-${tab}`)?.textContent, titleOf(row)];
+const titleOf = (control: HTMLElement): string =>
+  control.closest(".section")?.querySelector("h2")?.textContent ?? "";
+
+function textOf(control: HTMLElement): string {
+  const { tip, path } = control.dataset;
+  const parts = [...control.querySelectorAll("button, input, select")].map(
+    (part) => `${part.getAttribute("aria-label") ?? part.textContent}`,
+  );
+  const texts = [labelOf(control), titleOf(control), tip ?? "", path ?? "", ...parts];
+  return texts.join(" ").toLowerCase();
+}
+
+/** Whether the control exists for this scene; its tab or menu may be closed. */
+function isOffered(control: HTMLElement): boolean {
+  const hidden = control.closest("[hidden]");
+  return labelOf(control) !== "" && (hidden === null || hidden.matches("[data-tab], [role=menu]"));
+}
+
+function resultFor(control: HTMLElement, showTab: (id: string) => void): HTMLElement {
+  const tab = control.closest<HTMLElement>("[data-tab]")?.dataset.tab;
+  const place = [tab && document.getElementById(`tab-${tab}`)?.textContent, titleOf(control)];
+  const menu = control.closest("[role=menu]")?.getAttribute("aria-label");
   return element(
     "button",
-    { type: "button", class: "found", click: () => reveal(row, tab, showTab) },
-    element("span", {}, labelOf(row)),
-    element("small", {}, place.filter(Boolean).join(" › ")),
+    { type: "button", class: "found", click: () => reveal(control, tab, showTab) },
+    element("span", {}, labelOf(control)),
+    element("small", {}, [...place, menu].filter(Boolean).join(" › ")),
     icon("chevron"),
   );
 }
 
-/** Shows the control in its tab, and moves the focus to it. */
-function reveal(row: HTMLElement, tab: string, showTab: (id: string) => void): void {
-  showTab(tab);
-  const fold = row.closest("details");
+/** Shows the control where it is, and moves the focus to it. */
+function reveal(
+  control: HTMLElement,
+  tab: string | undefined,
+  showTab: (id: string) => void,
+): void {
+  if (tab !== undefined) showTab(tab);
+  const menu = control.closest<HTMLElement>("[role=menu]");
+  if (menu?.hidden) menu.parentElement?.querySelector("button")?.click();
+  const fold = control.closest("details");
   if (fold) fold.open = true;
-  row.scrollIntoView({ block: "center" });
-  row.querySelector<HTMLElement>("input, select, button:not(.reset)")?.focus();
-  row.classList.add("revealed");
-  setTimeout(() => row.classList.remove("revealed"), highlightMs);
+  control.scrollIntoView({ block: "center" });
+  const inner = control.querySelector<HTMLElement>("input, select, button:not(.reset)");
+  (inner ?? control).focus();
+  control.classList.add("revealed");
+  setTimeout(() => control.classList.remove("revealed"), highlightMs);
 }

@@ -1,10 +1,11 @@
-// The Settings tab: presets, search, undo and redo, and the generated sections.
+// The tab of all other settings: presets, search, terms, and the generated sections.
 
 import type { Viewer } from "../../session/viewer.ts";
 import { element, icon, setText } from "../../widgets/element.ts";
 import { requiresControl } from "../../widgets/requires_control.ts";
 import { presetLabel } from "../../common/labels.ts";
 import { findControls } from "./control_search.ts";
+import { createTerms } from "./terms.ts";
 import { mountSettings } from "./settings_sections.ts";
 
 /** `showTab` selects another tab by its name. */
@@ -50,6 +51,7 @@ export function createSettingsTab(
     element("div", { class: "toolbar" }, searchBox),
     noResults,
     elsewhere,
+    createTerms(),
     requiresControl(viewer, sections),
   );
 }

@@ -41,13 +41,13 @@ export function createTimingTab(viewer: Viewer, streamFields: HTMLElement): HTML
     const frame = viewer.frame.value;
     const idle = !frame || now - frame.drawnAt > idleAfterMs;
     const idleText = frame?.final ? "converged" : "refining";
-    const { fps, bytesPerSecond } = viewer.rates.read(now);
-    const median = viewer.latency.median;
+    const { fps, bytesPerSecond } = viewer.meters.rates.read(now);
+    const median = viewer.meters.latency.median;
     setText(rate.value, idle ? (frame ? idleText : "–") : `${formatRate(fps)} fps`);
     setText(latency.value, median === null ? "–" : `${median.toFixed(0)} ms`);
-    const first = viewer.responses.median;
+    const first = viewer.meters.responses.median;
     setText(response.value, first === null ? "–" : `${first.toFixed(0)} ms`);
-    const shownFps = viewer.shownRates.read(now).fps;
+    const shownFps = viewer.meters.shownRates.read(now).fps;
     setText(shown.value, shownFps > 0 ? `${formatRate(shownFps)} fps` : "–");
     const bytes = formatBandwidth(idle ? 0 : bytesPerSecond);
     setText(bandwidth.value, frame ? bytes : "–");
