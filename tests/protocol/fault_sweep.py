@@ -228,6 +228,7 @@ class Sweep:
 
     async def count(self, function, action, **rule):
         """How many calls the action makes."""
+        await self.renew_viewers(f"before {action}")
         self.stage.server.faults.arm(function, 0, **rule)
         outcome = await self.attempt(action)
         calls, _ = self.stage.server.faults.disarm(function)
