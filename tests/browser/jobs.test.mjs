@@ -57,15 +57,15 @@ stage.test("a view is rendered as a job, whose files the page of jobs shows", as
   const opened = page.context().waitForEvent("page");
   await dialog.getByRole("link", { name: "Show the jobs" }).click();
   const jobs = await opened;
-  const job = card(jobs, "shadow_objects, 96 × 54");
+  const job = card(jobs, "shadow_objects, 96 x 54");
   await job.getByText("Done", { exact: true }).waitFor({ timeout: 60_000 });
   const image = job.locator("img");
   await image.waitFor();
   await eventually(() => image.evaluate((node) => node.naturalWidth === 96), "the image is shown");
   const download = jobs.waitForEvent("download");
-  await job.getByRole("link", { name: /as a ZIP archive/ }).click();
+  await job.getByRole("link", { name: /^Download ZIP of/ }).click();
   const file = await download;
-  assert.equal(file.suggestedFilename(), "shadow_objects__96___54.zip");
+  assert.equal(file.suggestedFilename(), "shadow_objects__96_x_54.zip");
   const path = join(outputFolder, "job.zip");
   await file.saveAs(path);
   const archive = readFileSync(path);
@@ -90,7 +90,7 @@ stage.test("jobs are shown as they run, and can be cancelled from the keyboard",
   await card(page, "urgent").getByText("Canceled", { exact: true }).waitFor();
   await running.getByRole("button", { name: "Cancel endless" }).press("Enter");
   await running.getByText("Canceled", { exact: true }).waitFor({ timeout: 20_000 });
-  await running.getByRole("link", { name: /as a ZIP archive/ }).waitFor();
+  await running.getByRole("link", { name: /^Download ZIP of/ }).waitFor();
   await card(page, "next").getByText("Done", { exact: true }).waitFor({ timeout: 30_000 });
 });
 

@@ -23,7 +23,7 @@ const wish: RenderWish = {
 
 test("a job renders what the page shows", () => {
   const { entries, name } = renderJob(state, "helmet", wish);
-  assert.equal(name, "helmet, 640 × 360");
+  assert.equal(name, "helmet, 640 x 360");
   assert.deepEqual(entries, [
     {
       scene: "helmet",

@@ -65,7 +65,7 @@ export class JobCard {
         href: host.url(`api/v1/jobs/${job.job}/results.zip`),
         download: true,
         hidden: true,
-        "aria-label": `Download the files of ${title} as a ZIP archive`,
+        "aria-label": `Download ZIP of ${title}`,
       },
       "Download ZIP",
     );

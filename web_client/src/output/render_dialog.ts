@@ -93,10 +93,14 @@ export function createRenderDialog(
   );
   [turn.value, quality.value, rate.value] = ["", "0.98", "30"];
 
+  let offered: typeof imageFormats | null = null;
   const update = (): void => {
     const formats = turn.value === "" ? imageFormats : turntableFormats;
-    setOptions(format, formats);
-    format.value ||= (formats[0] as { value: string }).value;
+    if (formats !== offered) {
+      offered = formats;
+      setOptions(format, formats);
+      format.value = (formats[0] as { value: string }).value;
+    }
     const output = String(viewer.settings.value("view.buffer") ?? "output") === "output";
     frameRate.hidden = !videoFormats.has(format.value as RenderWish["format"]);
     background.hidden = !output || !keepAlpha.has(format.value);

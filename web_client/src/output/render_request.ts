@@ -66,5 +66,5 @@ export function renderJob(state: ViewState, stem: string, wish: RenderWish): Job
   if (clip) Object.assign(entry, { clip: clip.clip, time: clip.seconds });
   if (wish.turntable !== null) Object.assign(entry, { turntable: wish.turntable, fps: wish.fps });
   const what = wish.turntable === null ? "" : " turntable";
-  return { name: `${stem}${what}, ${wish.size.width} × ${wish.size.height}`, entries: [entry] };
+  return { name: `${stem}${what}, ${wish.size.width} x ${wish.size.height}`, entries: [entry] };
 }
