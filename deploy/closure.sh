@@ -48,6 +48,9 @@ grep -E '^(root|nogroup|heliograph):' /etc/group >"$root/etc/group"
   done
 
 install -m 755 "$(command -v busybox)" "$root/usr/bin/busybox"
+"$(dirname "$0")/sbom.sh" heliograph-image \
+  "$(dpkg-query --show --showformat '${Version}' heliograph)" \
+  "${programs[@]}" "$(command -v busybox)" >"$root/usr/share/doc/heliograph/image.spdx.json"
 # The commands that probes, hooks and operators call. Others are available as "busybox NAME".
 for name in cat cp find grep id ls nc rm sh sleep timeout; do
   ln -s busybox "$root/usr/bin/$name"

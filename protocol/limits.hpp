@@ -42,6 +42,8 @@ inline constexpr double min_clip_rate = 0.1;
 inline constexpr double max_clip_rate = 1000.0;
 /// Time in a clip, seconds.
 inline constexpr double max_clip_time = 1e6;
+/// Free part of an image on each side of the scene that is fitted into it.
+inline constexpr double max_margin = 0.45;
 /// Expected structural similarity at which an image is good enough.
 inline constexpr double min_similarity = 0.1;
 inline constexpr double max_similarity = 0.999;

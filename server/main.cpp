@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <exception>
 #include <memory>
+#include <new>
 #include <string>
 #include <thread>
 #include <variant>
@@ -36,14 +37,36 @@ std::unique_ptr<tbb::global_control> limit_threads_to_quota() {
                                                threads);
 }
 
+/// An exception that nothing can handle, as where memory is exhausted in a destructor, ends the
+/// program with one line.
+[[noreturn]] void end_with_reason() noexcept {
+  try {
+    if (const auto failure = std::current_exception()) std::rethrow_exception(failure);
+    std::fputs("heliograph: a library has given up, as where memory is exhausted\n", stderr);
+    std::_Exit(EXIT_FAILURE);
+  } catch (const std::bad_alloc&) {
+    std::fputs("heliograph: out of memory\n", stderr);
+    std::_Exit(EXIT_FAILURE);
+  } catch (const std::exception& failure) {
+    std::fprintf(stderr, "heliograph: %s\n", failure.what());
+  } catch (...) {
+    std::fputs("heliograph: an exception of unknown type\n", stderr);
+  }
+  std::abort();
+}
+
 }  // namespace
 
 int main(int count, char** arguments) {
+  std::set_terminate(end_with_reason);
   limit_malloc_arenas();
   const auto thread_limit = limit_threads_to_quota();
   try {
     const heliograph::cli::Command command = heliograph::cli::parse_command_line(count, arguments);
     return std::visit([](const auto& options) { return heliograph::cli::run(options); }, command);
+  } catch (const std::bad_alloc&) {
+    std::fputs("heliograph: out of memory\n", stderr);
+    return 1;
   } catch (const std::exception& failure) {
     std::fprintf(stderr, "heliograph: %s\n", failure.what());
     return 1;

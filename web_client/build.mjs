@@ -32,7 +32,7 @@ mkdirSync(folder, { recursive: true });
 
 // CMakeLists.txt reads them too, for builds without npm.
 const options = readFileSync(join(here, "esbuild.options"), "utf8").split("\n").filter(Boolean);
-for (const name of ["index.html", "api.html", "token.html", "icon.svg"]) {
+for (const name of ["index.html", "api.html", "jobs.html", "token.html", "icon.svg"]) {
   copyFileSync(join(here, "src/app", name), join(folder, name));
 }
 

@@ -6,6 +6,8 @@ import ssl
 
 import heliograph
 
+IDLE_TIMEOUT = 30  # seconds without viewers and calls
+
 
 def add_options(parser):
     parser.add_argument("--url", default="http://127.0.0.1:8080")
@@ -40,11 +42,11 @@ def open_view(options, width, height, scene=None):
             yield view
             return
         shown = {"scene": scene} if scene else {"copy_of": "main"}
-        own = view.session.create(width=width, height=height, **shown)["name"]
+        own = view.session.create(width=width, height=height, idle_timeout=IDLE_TIMEOUT, **shown)["name"]
         try:
             view.session.join(session=own)
             yield view
         finally:
-            # If the connection was lost, the session ends after its idle timeout.
+            # If the connection was lost, or the program killed, it ends after its idle timeout.
             with contextlib.suppress(ConnectionError):
                 view.session.close(session=own)

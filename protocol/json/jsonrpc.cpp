@@ -4,6 +4,7 @@
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <new>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
@@ -128,9 +129,7 @@ class Dispatcher::Exchange : public std::enable_shared_from_this<Exchange> {
       ++open_;
     }
     auto pending = std::make_shared<Pending>(shared_from_this(), slot, std::move(id));
-    return [pending = std::move(pending)](Result<RawJson> result) {
-      pending->finish(std::move(result));
-    };
+    return [pending = std::move(pending)](Result<RawJson> result) { pending->finish(result); };
   }
 
   /// No more calls will be expected. Until then no reply is sent.
@@ -144,19 +143,36 @@ class Dispatcher::Exchange : public std::enable_shared_from_this<Exchange> {
         : exchange_(std::move(exchange)), slot_(slot), id_(std::move(id)) {}
     Pending(const Pending&) = delete;
     Pending& operator=(const Pending&) = delete;
-    ~Pending() { finish(error::not_ready("the server dropped the call")); }
+    ~Pending() {
+      finish([] { return Result<RawJson>(error::not_ready("the server dropped the call")); });
+    }
 
-    void finish(Result<RawJson> result) noexcept {
+    void finish(const Result<RawJson>& result) noexcept {
+      finish([&]() -> const Result<RawJson>& { return result; });
+    }
+
+   private:
+    template <class MakeResult>
+    void finish(const MakeResult& make_result) noexcept {
       if (finished_.exchange(true)) return;
       try {
-        exchange_->settle(
-            slot_, result ? result_text(id_, *result) : error_answer(RawJson(id_), result.error()));
+        exchange_->settle(slot_, text_of(make_result));
       } catch (...) {
         // Out of memory or a failed transport: no receiver is left.
       }
     }
 
-   private:
+    /// An error where there is no memory for a large result: its caller waits.
+    template <class MakeResult>
+    std::string text_of(const MakeResult& make_result) const {
+      try {
+        const Result<RawJson>& result = make_result();
+        return result ? result_text(id_, *result) : error_answer(RawJson(id_), result.error());
+      } catch (const std::bad_alloc&) {
+        return error_answer(RawJson(id_), error::internal());
+      }
+    }
+
     std::shared_ptr<Exchange> exchange_;
     std::size_t slot_;
     json id_;
@@ -245,6 +261,8 @@ void Dispatcher::handle(std::string_view text, const CallContext& context, Reply
       handle_one(*message, context, exchange);
     }
     exchange->close();
+  } catch (const std::bad_alloc&) {
+    throw;
   } catch (const std::exception& failure) {
     if (report_failure_) report_failure_("reply", failure.what());
   }

@@ -54,6 +54,9 @@ struct RenderRequest {
   std::optional<std::uint32_t> height;
   std::string camera;
   std::optional<RenderView> view;
+  std::optional<std::array<float, 2>> orbit;
+  bool fit = false;
+  std::optional<double> margin;
   std::optional<std::uint32_t> turntable;
   std::string clip;
   double time = 0.0;
@@ -90,6 +93,17 @@ struct RenderRequest {
             .length(0, max_node_name)
             .or_default(),
         field("view", &RenderRequest::view, "Another camera than those of the scene."),
+        field("orbit", &RenderRequest::orbit,
+              "Another camera, which sees the whole scene: azimuth, 0 in front and 90 on the "
+              "right, and elevation, 90 above.")
+            .range(-360, 360)
+            .unit("degrees"),
+        field("fit", &RenderRequest::fit,
+              "Keeps the direction of the cameras and moves them so that they see the whole scene.")
+            .or_default(),
+        field("margin", &RenderRequest::margin,
+              "Free part of the image on each side of a scene that is fitted into it.")
+            .range(0, max_margin),
         field("turntable", &RenderRequest::turntable,
               "Frames of one turn of the camera around the scene.")
             .range(1, max_rendered_frames),
@@ -132,7 +146,7 @@ struct RenderRequest {
             .length(0, max_path)
             .or_default(),
         field("background", &RenderRequest::background,
-              "sky, transparent (PNG and WebP), or a colour such as #ffffff.")
+              "sky, blurred, transparent (PNG and WebP), or a colour such as #ffffff.")
             .length(1, max_session_name)
             .or_default(),
     };

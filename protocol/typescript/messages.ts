@@ -816,7 +816,7 @@ export interface JobCreateParamsEntriesView {
 }
 
 export interface JobCreateParamsEntries {
-  /** sky, transparent (PNG and WebP), or a colour such as #ffffff. */
+  /** sky, blurred, transparent (PNG and WebP), or a colour such as #ffffff. */
   background?: string;
   /** Buffer to write. */
   buffer?: string;
@@ -826,6 +826,8 @@ export interface JobCreateParamsEntries {
   clip?: string;
   /** Image that lights the scene; empty: the one beside the scene. */
   environment?: string;
+  /** Keeps the direction of the cameras and moves them so that they see the whole scene. */
+  fit?: boolean;
   /** Format; absent: by the extension of the name. */
   format?: "png" | "jpeg" | "webp" | "npy" | "exr" | "mp4" | "webm" | "animated_webp";
   /** Frames per second of clips and videos. */
@@ -834,6 +836,13 @@ export interface JobCreateParamsEntries {
   frames?: number;
   /** Frame height. [pixels] */
   height?: number;
+  /** Free part of the image on each side of a scene that is fitted into it. */
+  margin?: number;
+  /**
+   * Another camera, which sees the whole scene: azimuth, 0 in front and 90 on the right, and
+   * elevation, 90 above. [degrees]
+   */
+  orbit?: number[];
   /** Name of the file; {scene}, {camera} and {frame:04} stand for what is in the image. */
   output?: string;
   /** Preset of the denoiser; empty: none. */

@@ -4,6 +4,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "cli/option_groups.hpp"
 #include "net/http/http_client.hpp"
 #include "protocol/json/suggestions.hpp"
 #include "session/library/scene_catalogue.hpp"
@@ -30,17 +31,8 @@ std::vector<std::string> render_arguments(const ServeOptions& options) {
   }
   add("--preset", options.settings.preset);
   for (const std::string& assignment : options.settings.assignments) add("--set", assignment);
-  const scene::ImportLimits& limits = options.limits;
-  add("--max-scene-bytes", std::to_string(limits.file_bytes));
-  add("--max-unpacked-bytes", std::to_string(limits.unpacked_bytes));
-  add("--max-geometry-bytes", std::to_string(limits.scene_bytes));
-  add("--max-triangles", std::to_string(limits.triangles));
-  add("--max-texels", std::to_string(limits.texels));
-  add("--max-texture-size", std::to_string(limits.texture_size));
-  add("--max-nodes", std::to_string(limits.nodes));
-  add("--max-instances", std::to_string(limits.instances));
-  add("--max-node-depth", std::to_string(limits.node_depth));
-  if (limits.strict_assets) arguments.push_back("--strict-assets");
+  const std::vector<std::string> limits = limit_arguments(options.limits);
+  arguments.insert(arguments.end(), limits.begin(), limits.end());
   return arguments;
 }
 

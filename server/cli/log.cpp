@@ -71,7 +71,9 @@ class TextMessage : public spdlog::custom_flag_formatter {
 }  // namespace
 
 void set_up_log(const LogOptions& options) {
-  auto logger = spdlog::stderr_color_mt("heliograph");
+  constexpr const char* name = "heliograph";
+  spdlog::drop(name);  // a command may run another one
+  auto logger = spdlog::stderr_color_mt(name);
   auto formatter = std::make_unique<spdlog::pattern_formatter>();
   if (options.format == "json") {
     formatter->add_flag<JsonMessage>('*');

@@ -17,6 +17,24 @@ std::vector<std::string> tracer_names() {
   return names;
 }
 
+constexpr const char* strict_assets = "--strict-assets";
+
+/// The options of limits that are numbers: name, value and help.
+template <class Limits, class Visit>
+void visit_limits(Limits& limits, Visit visit) {
+  visit("--max-scene-bytes", limits.file_bytes, "Maximum bytes of a scene's files");
+  visit("--max-unpacked-bytes", limits.unpacked_bytes, "Maximum bytes of its decompressed buffers");
+  visit("--max-geometry-bytes", limits.scene_bytes,
+        "Maximum bytes of its geometry and animations in memory");
+  visit("--max-triangles", limits.triangles, "Maximum number of triangles of a scene");
+  visit("--max-texels", limits.texels, "Maximum number of texels of a scene's images");
+  visit("--max-texture-size", limits.texture_size,
+        "Maximum width and height of a texture image, pixels");
+  visit("--max-nodes", limits.nodes, "Maximum number of nodes of a scene");
+  visit("--max-instances", limits.instances, "Maximum number of mesh instances of a scene");
+  visit("--max-node-depth", limits.node_depth, "Maximum depth of the node hierarchy");
+}
+
 }  // namespace
 
 CLI::Validator one_of(const std::vector<std::string>& names) {
@@ -64,11 +82,15 @@ void add_jpeg_option(CLI::App& command, DeviceOptions& options) {
       ->group("Device");
 }
 
-void add_settings_options(CLI::App& command, SettingsOptions& options) {
+CLI::Validator preset_name() {
   std::vector<std::string> presets;
   for (const protocol::Preset& preset : protocol::presets()) presets.emplace_back(preset.name);
+  return one_of(presets);
+}
+
+void add_settings_options(CLI::App& command, SettingsOptions& options) {
   command.add_option("--preset", options.preset, "Preset of the denoiser; --set is applied on top")
-      ->check(one_of(presets))
+      ->check(preset_name())
       ->group("Frames");
   command
       .add_option("--set", options.assignments,
@@ -88,27 +110,26 @@ void add_environment_option(CLI::App& command, std::string& environment) {
 }
 
 void add_limit_options(CLI::App& command, scene::ImportLimits& limits) {
-  const auto add = [&](const char* name, auto& limit, const char* help) {
-    return command.add_option(name, limit, help)
+  constexpr const char* group = "Limits of scenes";
+  visit_limits(limits, [&](const char* name, auto& limit, const char* help) {
+    command.add_option(name, limit, help)
         ->check(CLI::PositiveNumber)
         ->capture_default_str()
-        ->group("Limits of scenes");
-  };
-  add("--max-scene-bytes", limits.file_bytes, "Maximum bytes of a scene's files");
-  add("--max-unpacked-bytes", limits.unpacked_bytes, "Maximum bytes of its decompressed buffers");
-  add("--max-geometry-bytes", limits.scene_bytes,
-      "Maximum bytes of its geometry and animations in memory");
-  add("--max-triangles", limits.triangles, "Maximum number of triangles of a scene");
-  add("--max-texels", limits.texels, "Maximum number of texels of a scene's images");
-  add("--max-texture-size", limits.texture_size,
-      "Maximum width and height of a texture image, pixels");
-  add("--max-nodes", limits.nodes, "Maximum number of nodes of a scene");
-  add("--max-instances", limits.instances, "Maximum number of mesh instances of a scene");
-  add("--max-node-depth", limits.node_depth, "Maximum depth of the node hierarchy");
+        ->group(group);
+  });
   command
-      .add_flag("--strict-assets", limits.strict_assets,
+      .add_flag(strict_assets, limits.strict_assets,
                 "Refuse scenes with missing or damaged images instead of showing them without")
-      ->group("Limits of scenes");
+      ->group(group);
+}
+
+std::vector<std::string> limit_arguments(const scene::ImportLimits& limits) {
+  std::vector<std::string> arguments;
+  visit_limits(limits, [&](const char* name, auto limit, const char*) {
+    arguments.insert(arguments.end(), {name, std::to_string(limit)});
+  });
+  if (limits.strict_assets) arguments.emplace_back(strict_assets);
+  return arguments;
 }
 
 }  // namespace heliograph::cli

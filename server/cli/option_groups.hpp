@@ -18,9 +18,15 @@ void add_device_options(CLI::App& command, DeviceOptions& options);
 void add_shader_option(CLI::App& command, DeviceOptions& options);
 void add_jpeg_option(CLI::App& command, DeviceOptions& options);
 void add_settings_options(CLI::App& command, SettingsOptions& options);
+/// Accepts the name of a preset.
+CLI::Validator preset_name();
+/// What an image shows and how good it is.
+void add_view_options(CLI::App& command, RenderOptions& options);
 void add_environment_option(CLI::App& command, std::string& environment);
 /// Limits beyond which a scene file is refused.
 void add_limit_options(CLI::App& command, scene::ImportLimits& limits);
+/// The options that give another program of ours these limits.
+std::vector<std::string> limit_arguments(const scene::ImportLimits& limits);
 
 /// `Number` is an integer or an optional one; `otherwise` describes the default.
 template <class Number>
@@ -38,5 +44,7 @@ void add_size_options(CLI::App& command, Number& width, Number& height,
 CLI::App* add_serve(CLI::App& app, ServeOptions& options);
 /// Adds the command "render".
 CLI::App* add_render(CLI::App& app, RenderOptions& options);
+/// Adds the command "compare".
+CLI::App* add_compare(CLI::App& app, CompareOptions& options);
 
 }  // namespace heliograph::cli

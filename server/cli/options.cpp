@@ -202,11 +202,13 @@ Command parse(const std::vector<std::string>& given) {
 
   ServeOptions serve;
   RenderOptions render;
+  CompareOptions compare;
   DevicesOptions devices;
   SchemaOptions schema;
   HealthOptions health;
   const CLI::App* serve_command = add_serve(app, serve);
   const CLI::App* render_command = add_render(app, render);
+  const CLI::App* compare_command = add_compare(app, compare);
   const CLI::App* devices_command = add_devices(app, devices);
   const CLI::App* schema_command = add_schema(app, schema);
   const CLI::App* health_command = add_health(app, health);
@@ -234,6 +236,7 @@ Command parse(const std::vector<std::string>& given) {
   }
   if (*serve_command) return serve;
   if (*render_command) return render;
+  if (*compare_command) return compare;
   if (*devices_command) return devices;
   if (*schema_command) return schema;
   if (*health_command) {

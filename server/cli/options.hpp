@@ -81,6 +81,7 @@ struct RenderOptions {
   protocol::RenderRequest request;  // of every scene; what an entry of the manifest lacks
   std::string format;               // empty: by the extension of the output
   std::string reference;            // reference.scope; empty: no path tracing
+  std::string orbit;                // AZIMUTH,ELEVATION; empty: none
   SettingsOptions settings;
   scene::ImportLimits limits;
   bool resume = false;  // keeps files that exist
@@ -89,6 +90,18 @@ struct RenderOptions {
   std::string progress = "auto";
   bool timings = false;
   DeviceOptions device;
+};
+
+struct CompareOptions {
+  std::string first;   // scene file, image file, or the address of a server
+  std::string second;  // empty: the first with the second preset
+  std::string second_preset;
+  double least_ssim = 0.98;
+  double most_flip = 1.0;
+  std::string report;  // HTML file to write; empty: none
+  std::string token;
+  std::string authorities;  // file; empty: the system's
+  RenderOptions render;     // of scenes, both
 };
 
 struct DevicesOptions {
@@ -110,8 +123,8 @@ struct Finished {
   int exit_code = 0;
 };
 
-using Command = std::variant<Finished, ServeOptions, RenderOptions, DevicesOptions, SchemaOptions,
-                             HealthOptions>;
+using Command = std::variant<Finished, ServeOptions, RenderOptions, CompareOptions, DevicesOptions,
+                             SchemaOptions, HealthOptions>;
 
 /// Reads the command line, HELIOGRAPH_* variables and the file of --config, in this order of
 /// precedence. Help is printed to stdout, errors to stderr with the nearest known name.

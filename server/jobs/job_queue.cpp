@@ -60,6 +60,7 @@ JobQueue::JobQueue(QueueOptions options)
     : options_(std::move(options)), store_(prepared(options_.folder)) {
   const double time = now();
   store_.recover(most_attempts, time, time + options_.keep_seconds);
+  for (const auto& [id, name] : store_.files_without_checksum()) keep_file(id, name);
 }
 
 JobQueue::~JobQueue() {
@@ -164,12 +165,21 @@ Result<JobInfo> JobQueue::cancel(const std::string& id) {
   return job;
 }
 
-Result<fs::path> JobQueue::file(const std::string& id, const std::string& name) {
+Result<StoredFile> JobQueue::file(const std::string& id, const std::string& name) {
   const std::lock_guard lock(mutex_);
-  // Only names that are in the database are looked for on disk.
-  if (store_.file_bytes(id, name)) return folder_of(id) / "files" / name;
+  if (auto file = store_.file(id, name)) return *std::move(file);
   if (!store_.find(id)) return no_such_job(id);
   return protocol::error::not_found("name", "the job has no such file");
+}
+
+Result<std::vector<StoredFile>> JobQueue::files(const std::string& id) {
+  const std::lock_guard lock(mutex_);
+  if (!store_.find(id)) return no_such_job(id);
+  return store_.files(id);
+}
+
+fs::path JobQueue::path_of(const std::string& id, const StoredFile& file) const {
+  return folder_of(id) / "files" / file.name;
 }
 
 fs::path JobQueue::folder_of(const std::string& id) const {
@@ -185,6 +195,7 @@ bool JobQueue::wait(std::condition_variable& event, double seconds) {
 void JobQueue::run() {
   while (true) {
     try {
+      record_end();
       expire();
       std::optional<BegunJob> job;
       {
@@ -215,13 +226,17 @@ void JobQueue::expire() {
   for (const std::string& id : expired) fs::remove_all(folder_of(id), ignored);
 }
 
-void JobQueue::finish(const std::string& id, const JobEnd& end) {
+/// Where it throws, as while the disk is full, the end is recorded later.
+void JobQueue::record_end() {
+  if (!unrecorded_) return;
+  const std::string id = unrecorded_->first;
   {
     const std::lock_guard lock(mutex_);
     const double time = now();
-    store_.end(id, end, time, time + options_.keep_seconds);
+    store_.end(id, unrecorded_->second, time, time + options_.keep_seconds);
     to_cancel_.erase(id);
   }
+  unrecorded_.reset();
   webhook_event_.notify_all();
   announce(id);
 }

@@ -5,9 +5,11 @@
 #include <filesystem>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "jobs/job_store.hpp"
@@ -66,7 +68,11 @@ class JobQueue {
   protocol::Result<protocol::JobInfo> status(const std::string& id);
   protocol::Result<protocol::JobInfo> cancel(const std::string& id);
   /// A complete file of a job.
-  protocol::Result<std::filesystem::path> file(const std::string& id, const std::string& name);
+  protocol::Result<StoredFile> file(const std::string& id, const std::string& name);
+  /// The complete files of a job.
+  protocol::Result<std::vector<StoredFile>> files(const std::string& id);
+  /// Where it is.
+  std::filesystem::path path_of(const std::string& id, const StoredFile& file) const;
 
  private:
   protocol::Result<void> check(const protocol::JobCreate& request) const;
@@ -81,11 +87,12 @@ class JobQueue {
   void take_event(const BegunJob& job, const std::string& line, JobEnd& end);
   void keep_file(const std::string& id, const std::string& name);
   std::string why_to_stop(const std::string& id);
-  void finish(const std::string& id, const JobEnd& end);
+  void record_end();
   void announce(const std::string& id);
   std::filesystem::path folder_of(const std::string& id) const;
 
   const QueueOptions options_;
+  std::optional<std::pair<std::string, JobEnd>> unrecorded_;  // of the queue's thread
   std::function<void(const protocol::JobInfo&)> listener_;
   std::mutex mutex_;  // guards what follows
   JobStore store_;

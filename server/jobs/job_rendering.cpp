@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "jobs/checksum.hpp"
 #include "jobs/job_queue.hpp"
 #include "protocol/json/codec.hpp"
 
@@ -122,11 +123,12 @@ void JobQueue::render(const BegunJob& job) {
   } catch (const fs::filesystem_error& failure) {
     end = {.state = JobState::failed,
            .failures = {{.entry = 0, .scene = {}, .reason = failure.code().message()}}};
-  } catch (const std::runtime_error& failure) {
+  } catch (const std::exception& failure) {
     end = {.state = JobState::failed,
            .failures = {{.entry = 0, .scene = {}, .reason = failure.what()}}};
   }
-  finish(job.id, end);
+  unrecorded_ = {job.id, std::move(end)};
+  record_end();
 }
 
 /// Empty: go on.
@@ -186,11 +188,13 @@ void JobQueue::take_event(const BegunJob& job, const std::string& line, JobEnd& 
 }
 
 void JobQueue::keep_file(const std::string& id, const std::string& name) {
+  const fs::path file = folder_of(id) / "files" / name;
   std::error_code error;
-  const std::uintmax_t bytes = fs::file_size(folder_of(id) / "files" / name, error);
-  if (error) return;
+  const std::uintmax_t bytes = fs::file_size(file, error);
+  const auto crc = crc32_of(file);
+  if (error || !crc) return;
   const std::lock_guard lock(mutex_);
-  store_.add_file(id, name, bytes);
+  store_.add_file(id, {.name = name, .bytes = bytes, .crc = *crc});
 }
 
 }  // namespace heliograph::jobs

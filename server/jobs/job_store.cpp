@@ -35,6 +35,13 @@ std::optional<double> optional_real(const Statement& row, int column) {
   return row.real(column);
 }
 
+/// Columns name, bytes, crc.
+StoredFile read_file(const Statement& row) {
+  return {.name = row.text(0),
+          .bytes = static_cast<std::uint64_t>(row.integer(1)),
+          .crc = static_cast<std::uint32_t>(row.integer(2))};
+}
+
 bool is_unreserved(char c) {
   return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
          std::string_view("-._~/").find(c) != std::string_view::npos;
@@ -77,7 +84,11 @@ void JobStore::create_tables() {
       "CREATE INDEX IF NOT EXISTS failures_of ON failures (job);"
       "CREATE TABLE IF NOT EXISTS files ("
       "  job TEXT NOT NULL REFERENCES jobs (id) ON DELETE CASCADE, name TEXT NOT NULL,"
-      "  bytes INTEGER NOT NULL, PRIMARY KEY (job, name));");
+      "  bytes INTEGER NOT NULL, crc INTEGER, PRIMARY KEY (job, name));");
+  // Earlier versions have stored no checksums.
+  const bool checksums =
+      database_.prepare("SELECT 1 FROM pragma_table_info('files') WHERE name = 'crc'").step();
+  if (!checksums) database_.execute("ALTER TABLE files ADD COLUMN crc INTEGER");
 }
 
 void JobStore::recover(int most_attempts, double now, double expires) {
@@ -144,7 +155,11 @@ JobInfo JobStore::read_job(const Statement& row, bool with_files) {
   job.ended = optional_real(row, 10);
   job.expires = optional_real(row, 11);
   job.failures = failures(job.job);
-  if (with_files) job.files = files(job.job);
+  if (!with_files) return job;
+  for (const StoredFile& file : files(job.job)) {
+    job.files.push_back(
+        {.name = file.name, .url = file_url(job.job, file.name), .bytes = file.bytes});
+  }
   return job;
 }
 
@@ -161,15 +176,19 @@ std::vector<protocol::JobFailure> JobStore::failures(const std::string& id) {
   return failures;
 }
 
-std::vector<protocol::JobFile> JobStore::files(const std::string& id) {
-  std::vector<protocol::JobFile> files;
-  Statement rows = database_.prepare("SELECT name, bytes FROM files WHERE job = ?1 ORDER BY name");
+std::vector<StoredFile> JobStore::files(const std::string& id) {
+  std::vector<StoredFile> files;
+  Statement rows =
+      database_.prepare("SELECT name, bytes, crc FROM files WHERE job = ?1 ORDER BY name");
   rows.bind(1, id);
-  while (rows.step()) {
-    files.push_back({.name = rows.text(0),
-                     .url = file_url(id, rows.text(0)),
-                     .bytes = static_cast<std::uint64_t>(rows.integer(1))});
-  }
+  while (rows.step()) files.push_back(read_file(rows));
+  return files;
+}
+
+std::vector<std::pair<std::string, std::string>> JobStore::files_without_checksum() {
+  std::vector<std::pair<std::string, std::string>> files;
+  Statement rows = database_.prepare("SELECT job, name FROM files WHERE crc IS NULL");
+  while (rows.step()) files.emplace_back(rows.text(0), rows.text(1));
   return files;
 }
 
@@ -208,10 +227,11 @@ std::uint64_t JobStore::bytes() {
   return static_cast<std::uint64_t>(row.integer(0));
 }
 
-std::optional<std::uint64_t> JobStore::file_bytes(const std::string& id, const std::string& name) {
-  Statement row = database_.prepare("SELECT bytes FROM files WHERE job = ?1 AND name = ?2");
+std::optional<StoredFile> JobStore::file(const std::string& id, const std::string& name) {
+  Statement row =
+      database_.prepare("SELECT name, bytes, crc FROM files WHERE job = ?1 AND name = ?2");
   if (!row.bind(1, id).bind(2, name).step()) return std::nullopt;
-  return static_cast<std::uint64_t>(row.integer(0));
+  return read_file(row);
 }
 
 std::optional<BegunJob> JobStore::begin(double now) {
@@ -253,11 +273,12 @@ void JobStore::set_progress(const std::string& id, std::uint32_t done, std::uint
       .run();
 }
 
-void JobStore::add_file(const std::string& id, const std::string& name, std::uint64_t bytes) {
-  database_.prepare("INSERT OR REPLACE INTO files (job, name, bytes) VALUES (?1, ?2, ?3)")
+void JobStore::add_file(const std::string& id, const StoredFile& file) {
+  database_.prepare("INSERT OR REPLACE INTO files (job, name, bytes, crc) VALUES (?1, ?2, ?3, ?4)")
       .bind(1, id)
-      .bind(2, name)
-      .bind(3, static_cast<std::int64_t>(bytes))
+      .bind(2, file.name)
+      .bind(3, static_cast<std::int64_t>(file.bytes))
+      .bind(4, std::int64_t{file.crc})
       .run();
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "jobs/database.hpp"
@@ -16,6 +17,13 @@ namespace heliograph::jobs {
 struct BegunJob {
   std::string id;
   std::vector<protocol::RenderRequest> entries;
+};
+
+/// A complete file of a job.
+struct StoredFile {
+  std::string name;
+  std::uint64_t bytes = 0;
+  std::uint32_t crc = 0;  // CRC-32
 };
 
 /// How a job ended.
@@ -47,14 +55,18 @@ class JobStore {
   protocol::JobList list(const protocol::JobListRequest& request);
   std::uint64_t count(protocol::JobState state);
   std::uint64_t bytes();
-  std::optional<std::uint64_t> file_bytes(const std::string& id, const std::string& name);
+  std::optional<StoredFile> file(const std::string& id, const std::string& name);
+  /// All of a job, by their names.
+  std::vector<StoredFile> files(const std::string& id);
+  /// Files that a server without checksums has stored, and their jobs.
+  std::vector<std::pair<std::string, std::string>> files_without_checksum();
 
   /// The next job in the queue, which is running now.
   std::optional<BegunJob> begin(double now);
   /// Puts a running job back into the queue.
   void put_back(const std::string& id);
   void set_progress(const std::string& id, std::uint32_t done, std::uint32_t images);
-  void add_file(const std::string& id, const std::string& name, std::uint64_t bytes);
+  void add_file(const std::string& id, const StoredFile& file);
   void end(const std::string& id, const JobEnd& end, double now, double expires);
 
   std::optional<DueWebhook> due_webhook(double now);
@@ -68,7 +80,6 @@ class JobStore {
   void create_tables();
   protocol::JobInfo read_job(const Statement& row, bool with_files);
   std::vector<protocol::JobFailure> failures(const std::string& id);
-  std::vector<protocol::JobFile> files(const std::string& id);
 
   Database database_;
 };

@@ -13,6 +13,7 @@
 #include <csignal>
 #include <cstring>
 #include <stdexcept>
+#include <utility>
 
 namespace heliograph::jobs {
 namespace {
@@ -21,18 +22,28 @@ constexpr std::size_t most_error_bytes = 4096;
 constexpr int lowest_priority = 19;
 constexpr int cannot_start = 127;
 
+[[noreturn]] void throw_cannot_start() {
+  throw std::runtime_error(std::string("cannot start a renderer: ") + std::strerror(errno));
+}
+
+/// Closes its ends, but for one that was taken.
 struct Pipe {
   int read = -1;
   int write = -1;
 
   Pipe() {
     std::array<int, 2> ends{};
-    if (pipe2(ends.data(), O_CLOEXEC) != 0) {
-      throw std::runtime_error(std::string("cannot start a renderer: ") + std::strerror(errno));
-    }
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) throw_cannot_start();
     read = ends[0];
     write = ends[1];
   }
+  ~Pipe() {
+    if (read >= 0) close(read);
+    close(write);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+  int take_read() { return std::exchange(read, -1); }
 };
 
 /// Between fork and exec: calls only what is safe there. Files of the server stay closed.
@@ -73,15 +84,12 @@ RenderProcess::RenderProcess(const std::vector<std::string>& arguments,
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
-  const Pipe output, error;
+  Pipe output, error;
   const pid_t pid = fork();
   if (pid == 0) become_renderer(pointers.data(), folder.c_str(), output.write, error.write);
-  close(output.write);
-  close(error.write);
-  output_ = output.read;
-  error_ = error.read;
-  if (pid < 0)
-    throw std::runtime_error(std::string("cannot start a renderer: ") + std::strerror(errno));
+  if (pid < 0) throw_cannot_start();
+  output_ = output.take_read();
+  error_ = error.take_read();
   pid_ = pid;
   fcntl(error_, F_SETFL, O_NONBLOCK);
 }

@@ -62,6 +62,8 @@ class ClientStream {
   ~ClientStream();
 
   bool is_secure() const;
+  /// False once it was moved from.
+  bool has_socket() const { return layers_ != nullptr; }
   /// The address of the other end, which may be a proxy.
   const std::string& peer() const { return slot_.address(); }
   /// TCP below, with its timeouts.

@@ -37,18 +37,25 @@ std::string Listener::url(const std::string& scheme) const {
 }
 
 void Listener::accept() {
+  if (waits_ || !acceptor_.is_open()) return;
   acceptor_.async_accept([this](error_code error, tcp::socket socket) {
+    waits_ = false;
     if (error == asio::error::operation_aborted || !acceptor_.is_open()) return;
     if (!error) on_accept_(std::move(socket));
     // Out of file descriptors: retry later.
     if (error && error != asio::error::connection_aborted) {
       spdlog::warn("cannot accept a connection: {}", error.message());
       retry_.expires_after(std::chrono::milliseconds(100));
-      retry_.async_wait([this](error_code) { accept(); });
+      retry_.async_wait([this](error_code) {
+        waits_ = false;
+        accept();
+      });
+      waits_ = true;
       return;
     }
     accept();
   });
+  waits_ = true;
 }
 
 void Listener::close() {

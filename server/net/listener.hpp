@@ -22,6 +22,7 @@ class Listener {
 
   /// "scheme://address:port/"
   std::string url(const std::string& scheme) const;
+  /// Accepts until it is closed, or until accepting a connection throws: then it is called again.
   void accept();
   void close();
 
@@ -30,6 +31,7 @@ class Listener {
   const OnAccept on_accept_;
   boost::asio::ip::tcp::acceptor acceptor_;
   boost::asio::steady_timer retry_;
+  bool waits_ = false;  // for a connection, or to retry
 };
 
 }  // namespace heliograph::net

@@ -9,9 +9,11 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/signal_set.hpp>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "net/connection.hpp"
@@ -28,6 +30,7 @@ namespace {
 
 // Apart from the main port's limit, so that viewers cannot keep monitoring out.
 constexpr std::size_t max_metrics_connections = 32;
+constexpr std::chrono::milliseconds pause_after_failure{10};
 
 std::vector<AddressRange> address_ranges(const std::vector<std::string>& texts) {
   return {texts.begin(), texts.end()};
@@ -130,6 +133,20 @@ struct Server::State {
     });
   }
 
+  /// False if a handler failed, as where memory is exhausted: it has cost its connection, no more.
+  bool run_handlers() {
+    try {
+      listener.accept();
+      if (metrics_listener) metrics_listener->accept();
+      io.run();
+      return true;
+    } catch (const std::exception& failure) {
+      spdlog::error("a connection failed: {}", failure.what());
+    }
+    std::this_thread::sleep_for(pause_after_failure);
+    return false;
+  }
+
   /// Stops accepting viewers; after the drain notice, closes all connections.
   void drain() {
     if (std::exchange(context.draining, true)) return;
@@ -187,9 +204,7 @@ std::optional<std::string> Server::metrics_url() const {
 
 void Server::run() {
   state_->wait_for_signals();
-  state_->listener.accept();
-  if (state_->metrics_listener) state_->metrics_listener->accept();
-  state_->io.run();
+  while (!state_->run_handlers()) continue;
 }
 
 void Server::stop() {

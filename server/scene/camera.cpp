@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "scene/camera_choice.hpp"
+
 namespace heliograph::scene {
 
 glm::mat4 view_matrix(const Camera& camera) {
@@ -44,35 +46,8 @@ bool same_view(const Camera& a, const Camera& b) {
 }
 
 Camera fit_camera(const Bounds& bounds, float vertical_fov, float aspect) {
-  constexpr float margin = 1.08f;
-  const glm::vec3 center = bounds.empty() ? glm::vec3(0.0f) : bounds.center();
-  const glm::vec3 half =
-      bounds.empty() ? glm::vec3(1.0f) : 0.5f * (bounds.maximum - bounds.minimum);
-  const glm::vec3 back = glm::normalize(glm::vec3(0.55f, 0.35f, 1.0f));
-  const glm::vec3 right = glm::normalize(glm::cross(glm::vec3(0.0f, 1.0f, 0.0f), back));
-  const glm::vec3 up = glm::cross(back, right);
-  const float slope_y = std::tan(glm::radians(vertical_fov) / 2.0f);
-  const float slope_x = slope_y * aspect;
-
-  // The camera distance at which each corner of the box enters the frustum.
-  float distance = 0.0f;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 offset =
-        half * glm::vec3(corner & 1 ? 1 : -1, corner & 2 ? 1 : -1, corner & 4 ? 1 : -1);
-    const float needed = std::max(std::abs(glm::dot(offset, right)) / slope_x,
-                                  std::abs(glm::dot(offset, up)) / slope_y);
-    distance = std::max(distance, margin * needed + glm::dot(offset, back));
-  }
-  const float radius = std::max(glm::length(half), 1e-3f);
-  distance = std::max(distance, radius * 0.1f);
-
-  Camera camera;
-  camera.name = "fit";
-  camera.eye = center + back * distance;
-  camera.target = center;
-  camera.vertical_fov = vertical_fov;
-  camera.near_plane = std::max(distance, radius) * 1e-3f;
-  return camera;
+  const glm::vec3 back = default_direction();
+  return fit_cameras(bounds, {&back, 1}, {.vertical_fov = vertical_fov, .aspect = aspect}).front();
 }
 
 }  // namespace heliograph::scene

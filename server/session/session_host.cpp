@@ -2,6 +2,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <exception>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -14,6 +15,8 @@ namespace heliograph::session {
 using protocol::Result;
 
 namespace {
+
+constexpr std::chrono::seconds pause_after_failure{1};
 
 /// The error of a nested request, with the name of its member in the outer request.
 protocol::Error renamed(const protocol::Error& part, std::string_view path, std::string name) {
@@ -84,7 +87,15 @@ void SessionHost::follow_jobs() {
 }
 
 void SessionHost::close_idle_sessions() {
-  while (!stopping_) idle_check_.wait_until(Clock::now() + sessions_.close_idle());
+  while (!stopping_) {
+    Clock::duration next = pause_after_failure;
+    try {
+      next = sessions_.close_idle();
+    } catch (const std::exception& failure) {
+      spdlog::error("idle sessions were not closed: {}", failure.what());
+    }
+    idle_check_.wait_until(Clock::now() + next);
+  }
 }
 
 SessionHost::~SessionHost() {

@@ -113,6 +113,11 @@ StepState SessionTimeline::leave_lockstep(const std::string& by) {
   return state;
 }
 
+std::uint64_t SessionTimeline::reset_count() const {
+  const std::lock_guard lock(core_.mutex);
+  return core_.timeline.reset_count();
+}
+
 bool SessionTimeline::in_lockstep() const {
   const std::lock_guard lock(core_.mutex);
   return core_.timeline.in_lockstep();

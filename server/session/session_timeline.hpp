@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -28,6 +29,8 @@ class SessionTimeline {
   protocol::Result<void> request_step(StepRequest request);
   /// Leaves lockstep; pending steps fail.
   protocol::StepState leave_lockstep(const std::string& by = {});
+  /// Grows each time that lockstep is entered.
+  std::uint64_t reset_count() const;
   bool in_lockstep() const;
 
   /// For the render thread: lets the time of the next frame pass. Nothing where none is due, or

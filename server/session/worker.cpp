@@ -9,7 +9,13 @@ namespace heliograph::session {
 
 Worker::Worker(std::string name, std::size_t capacity, std::size_t threads)
     : name_(std::move(name)), capacity_(capacity) {
-  for (std::size_t i = 0; i < threads; ++i) threads_.emplace_back([this] { run(); });
+  try {
+    threads_.reserve(threads);
+    for (std::size_t i = 0; i < threads; ++i) threads_.emplace_back([this] { run(); });
+  } catch (...) {
+    stop();  // those that have started
+    throw;
+  }
 }
 
 void Worker::stop() {

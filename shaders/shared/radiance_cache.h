@@ -31,6 +31,9 @@ SHARED_CONSTANT float unknown_openness = 0.5f;
 // Reflections show the cells' light of lights where these are smaller than this fraction of the
 // width of the specular lobe, which is taken to be the length of the ray times roughness squared.
 SHARED_CONSTANT float cell_in_lobe = 1.0f;
+// Mean cosine of the angle at which light from everywhere arrives. Surfaces that gathering rays
+// meet send light on as if it came at this angle: Indirect.SpecularFloorsSendOnWhatTheyGet pins it.
+SHARED_CONSTANT float mean_cosine = 2.0f / 3.0f;
 // One of so many rays moves the cell that it asks for.
 SHARED_CONSTANT uint moves_every = 8u;
 

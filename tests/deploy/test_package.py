@@ -54,6 +54,7 @@ class PackageTest:
         listed = run("dpkg-deb", "--contents", self.package)
         self.assertNotRegex(listed, r"(?m)^[-d]rws|^[-d]......s|^-.......w")
         for path in ("usr/bin/heliograph", "usr/share/doc/heliograph/copyright",
+                     "usr/share/doc/heliograph/heliograph.spdx.json",
                      "usr/lib/systemd/system/heliograph.service", "etc/heliograph/heliograph.toml",
                      "usr/share/heliograph/nvidia_icd.json"):
             self.assertIn(f"./{path}\n", listed + "\n")

@@ -4,6 +4,7 @@ import json
 import os
 import re
 import shutil
+import subprocess
 import unittest
 
 from harness.commands import run, succeeds
@@ -115,6 +116,40 @@ class Containers(unittest.TestCase):
                                   env=environment), "runs without a token")
 
 
+class RenderJob(unittest.TestCase):
+    """The job of a swarm that renders a manifest in shards."""
+
+    FILE = os.path.join(DEPLOY, "stack.render.yaml")
+
+    def setUp(self):
+        self.service = documents(self.FILE)[0]["services"]["render"]
+
+    def shard_of(self, slot, status=0):
+        """What the task of a slot would run, and its status if the program ended with another."""
+        command, = self.service["command"]
+        program = f'heliograph() {{ echo "$@"; return {status}; }}; '
+        ran = subprocess.run(["sh", "-c", program + command.replace("$$", "$")], check=False,
+                             stdout=subprocess.PIPE, text=True, env={**os.environ, "SLOT": slot})
+        return re.search(r"--shard (\S+) --resume --report (\S+)", ran.stdout).groups(), ran.returncode
+
+    def test_every_shard_has_a_task(self):
+        """Slots count from 0; the first one has the id of its node in place of a number."""
+        deploy = self.service["deploy"]
+        self.assertEqual(deploy["mode"], "replicated-job")
+        slots = ["7zq2k0x1m3", *map(str, range(1, deploy["replicas"]))]
+        shards = [self.shard_of(slot)[0] for slot in slots]
+        self.assertEqual(shards, [(f"{index + 1}/{len(slots)}", f"report_{index}.json")
+                                  for index in range(len(slots))])
+
+    def test_failed_entries_are_not_tried_again(self):
+        self.assertEqual([self.shard_of("1", status)[1] for status in (0, 3, 1)], [0, 0, 1])
+
+    def test_is_hardened_and_limited(self):
+        self.assertIs(self.service["read_only"], True)
+        self.assertEqual(self.service["cap_drop"], ["ALL"])
+        self.assertLessEqual({"memory", "pids"}, self.service["deploy"]["resources"]["limits"].keys())
+
+
 class Graphics(unittest.TestCase):
     """Environment of nodes with an NVIDIA GPU, for every orchestrator."""
 
@@ -170,6 +205,8 @@ class Graphics(unittest.TestCase):
         files_of = [word for name in ("stack.yaml", "stack.gpu.yaml")
                     for word in ("--compose-file", os.path.join(DEPLOY, name))]
         self.assertIn("kind: NVIDIA-GPU", run(program, "stack", "config", *files_of))
+        self.assertIn("mode: replicated-job", run(program, "stack", "config", "--compose-file",
+                                                  RenderJob.FILE))
 
 
 class Haproxy(unittest.TestCase):

@@ -6,6 +6,7 @@ import collections
 import json
 import logging
 import urllib.parse
+from ssl import SSLError
 
 import websockets
 
@@ -53,9 +54,16 @@ class Connection:
     @classmethod
     async def open(cls, url, *, session=None, token=None, ssl=None, timeout=30):
         options = {"ssl": ssl} if ssl else {}
-        socket = await asyncio.wait_for(
-            websockets.connect(websocket_address(url, session), max_size=None, compression=None,
-                               subprotocols=offered_subprotocols(token), **options), timeout)
+        try:
+            socket = await asyncio.wait_for(
+                websockets.connect(websocket_address(url, session), max_size=None, compression=None,
+                                   subprotocols=offered_subprotocols(token), **options), timeout)
+        except SSLError:
+            raise
+        except (OSError, asyncio.TimeoutError) as error:
+            reason = getattr(error, "strerror", None) or str(error) or "it took too long"
+            raise ConnectionError(
+                f"no server answers at {url}: {reason}; heliograph serve starts one") from error
         return cls(socket)
 
     async def close(self):

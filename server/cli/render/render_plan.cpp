@@ -12,7 +12,6 @@
 #include "protocol/json/suggestions.hpp"
 #include "protocol/limits.hpp"
 #include "scene/animation/pose.hpp"
-#include "scene/camera.hpp"
 #include "scene/camera_choice.hpp"
 
 namespace heliograph::cli {
@@ -32,6 +31,23 @@ std::vector<std::string_view> names_of(const std::vector<Named>& list) {
   return names;
 }
 
+/// Around the vertical axis.
+glm::mat3 rotation_of(double turns) {
+  const auto angle = static_cast<float>(2.0 * std::numbers::pi * turns);
+  return glm::mat3(glm::rotate(glm::mat4(1.0f), angle, glm::vec3(0.0f, 1.0f, 0.0f)));
+}
+
+/// The first of them: "front, side or 30 more".
+std::string listed(const std::vector<std::string_view>& names) {
+  constexpr std::size_t most = 8;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, names.size()); ++i) {
+    text += (i == 0 ? "" : ", ") + std::string(names[i]);
+  }
+  if (names.size() > most) text += " or " + std::to_string(names.size() - most) + " more";
+  return text;
+}
+
 scene::Camera camera_of(const protocol::RenderView& view) {
   const auto vector = [](const std::array<float, 3>& v) { return glm::vec3(v[0], v[1], v[2]); };
   scene::Camera camera;
@@ -43,22 +59,63 @@ scene::Camera camera_of(const protocol::RenderView& view) {
   return camera;
 }
 
-std::vector<scene::Camera> choose_cameras(const scene::Scene& scene,
-                                          const protocol::RenderRequest& request) {
+/// A camera in each frame's direction of a turn that begins at `back`, which see the whole scene:
+/// the first of them.
+scene::Camera fitted(const scene::Scene& scene, const protocol::RenderRequest& request,
+                     const glm::vec3& back, const scene::Camera& lens) {
+  const FrameSize size = frame_size(request);
+  const std::uint32_t frames = request.turntable.value_or(1);
+  std::vector<glm::vec3> directions;
+  for (std::uint32_t i = 0; i < frames; ++i) {
+    directions.push_back(rotation_of(static_cast<double>(i) / frames) * back);
+  }
+  scene::Camera camera =
+      scene::fit_cameras(
+          scene.bounds, directions,
+          {.vertical_fov = lens.vertical_fov,
+           .aspect = static_cast<float>(size.width) / static_cast<float>(size.height),
+           .margin = static_cast<float>(request.margin.value_or(scene::default_margin))})
+          .front();
+  camera.name = lens.name;
+  return camera;
+}
+
+std::vector<scene::Camera> named_cameras(const scene::Scene& scene,
+                                         const protocol::RenderRequest& request) {
   if (request.view) return {camera_of(*request.view)};
   if (request.camera == all_cameras && !scene.cameras.empty()) return scene.cameras;
   if (!request.camera.empty() && request.camera != all_cameras) {
     if (const scene::Camera* camera = scene::find_camera(scene, request.camera)) return {*camera};
-    const std::string many = std::to_string(scene.cameras.size());
-    const std::string what =
-        scene.cameras.empty() ? "no cameras" : "no camera " + request.camera + " among its " + many;
-    throw std::runtime_error("--camera: the scene has " + what +
-                             protocol::suggestion(request.camera, names_of(scene.cameras)));
+    if (scene.cameras.empty()) throw std::runtime_error("--camera: the scene has no cameras");
+    throw std::runtime_error("--camera: the scene has no camera " + request.camera +
+                             protocol::suggestion(request.camera, names_of(scene.cameras)) + " (" +
+                             listed(names_of(scene.cameras)) + ")");
   }
   if (!scene.cameras.empty()) return {scene.cameras.front()};
-  const FrameSize size = frame_size(request);
-  const float aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
-  return {scene::fit_camera(scene.bounds, scene::Camera().vertical_fov, aspect)};
+  return {};
+}
+
+std::vector<scene::Camera> choose_cameras(const scene::Scene& scene,
+                                          const protocol::RenderRequest& request) {
+  scene::Camera lens;
+  if (request.orbit) {
+    const auto [azimuth, elevation] = *request.orbit;
+    lens.name = "orbit";
+    return {fitted(scene, request, scene::orbit_direction(azimuth, elevation), lens)};
+  }
+  std::vector<scene::Camera> cameras = named_cameras(scene, request);
+  if (cameras.empty()) {
+    lens.name = "fit";
+    return {fitted(scene, request, scene::default_direction(), lens)};
+  }
+  if (!request.fit) {
+    if (!request.margin) return cameras;
+    throw std::runtime_error("--margin: needs --fit or --orbit, as the scene has cameras");
+  }
+  for (scene::Camera& camera : cameras) {
+    camera = fitted(scene, request, glm::normalize(camera.eye - camera.target), camera);
+  }
+  return cameras;
 }
 
 std::string length_of(const scene::Clip& clip) {
@@ -88,8 +145,7 @@ scene::Camera posed(const scene::Scene& scene, const scene::Camera& camera, cons
 /// The camera carried around the vertical axis through the middle of the scene.
 scene::Camera turned(const scene::Scene& scene, scene::Camera camera, double turns) {
   const glm::vec3 middle = scene.bounds.empty() ? camera.target : scene.bounds.center();
-  const auto angle = static_cast<float>(2.0 * std::numbers::pi * turns);
-  const glm::mat3 rotation(glm::rotate(glm::mat4(1.0f), angle, glm::vec3(0.0f, 1.0f, 0.0f)));
+  const glm::mat3 rotation = rotation_of(turns);
   camera.eye = middle + rotation * (camera.eye - middle);
   camera.target = middle + rotation * (camera.target - middle);
   camera.up = rotation * camera.up;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/engine_options.hpp"
+#include "cli/render/coverage.hpp"
 #include "cli/render/output_file.hpp"
 #include "cli/render/quality.hpp"
 #include "cli/render/render_plan.hpp"
@@ -21,6 +22,7 @@
 #include "scene/studio.hpp"
 #include "session/library/environment_source.hpp"
 #include "session/rendering/capture_content.hpp"
+#include "session/rendering/transparency.hpp"
 
 namespace heliograph::cli {
 namespace {
@@ -140,6 +142,7 @@ class ImageEnd {
 
   bool reached(const render::Frame& frame) {
     if (frame.converged || frame.samples >= request_.samples.value_or(most_samples)) return true;
+    if (!request_.samples && session::is_complete_at_once(request_.buffer)) return true;
     if (request_.time_limit && Clock::now() - begin_ >= Seconds(*request_.time_limit)) return true;
     if (!request_.quality || !estimate_.wants(frame.samples)) return false;
     const auto similarity = estimate_.add(frame.rgba, frame.width, frame.samples);
@@ -156,31 +159,40 @@ class ImageEnd {
   QualityEstimate estimate_;
 };
 
-session::CaptureContent render_image(RenderContext& context, render::Renderer& renderer,
-                                     const RenderTask& task) {
+/// What renders the images of an entry.
+struct Renderers {
+  explicit Renderers(render::Engine& engine) : images(engine) {}
+
+  render::Renderer images;
+  std::optional<CoverageRenderer> coverage;  // where the background is put in
+};
+
+session::CaptureContent render_image(RenderContext& context, Renderers& renderers,
+                                     const RenderTask& task, const Shot& shot) {
+  render::Renderer& renderer = renderers.images;
   const auto canceled = [&] { return context.canceled.load(); };
   std::uint32_t samples = 0;
   bool complete = false;
-  Coverage coverage;
   ImageEnd end(task.request);
   while (!complete) {
     const std::optional<render::Frame> frame = renderer.render(canceled);
     if (!frame || canceled()) throw RenderCanceled();
     samples = frame->samples;
-    if (!task.background.is_sky()) coverage.add(renderer, *frame);
     complete = end.reached(*frame);
   }
   context.report.image(samples);
   auto content =
       accepted(session::read_content(renderer, task.request.buffer, read_format(task.format)));
-  if (!task.background.is_sky()) {
-    put_background(std::get<render::Frame>(content.values).rgba, coverage.mean(), task.background);
+  if (renderers.coverage) {
+    session::put_background(std::get<render::Frame>(content.values).rgba,
+                            renderers.coverage->measure(shot, canceled), task.background.color());
   }
   return content;
 }
 
-void render_file(RenderContext& context, render::Renderer& renderer, const RenderTask& task,
+void render_file(RenderContext& context, Renderers& renderers, const RenderTask& task,
                  const PlannedFile& file) {
+  render::Renderer& renderer = renderers.images;
   const auto alpha =
       task.background.is_transparent() ? stream::Alpha::kept : stream::Alpha::ignored;
   const auto output =
@@ -189,7 +201,7 @@ void render_file(RenderContext& context, render::Renderer& renderer, const Rende
     if (shot.cut) renderer.reset();
     accept(renderer.set_pose(task.request.clip, shot.seconds));
     renderer.set_camera(shot.camera);
-    output->add(render_image(context, renderer, task));
+    output->add(render_image(context, renderers, task, shot));
   }
   output->finish();
   context.report.file(file.path);
@@ -260,18 +272,21 @@ void render_task(RenderContext& context, const RenderTask& task) {
   }
   const std::set<fs::path> kept = existing_files(context.options, files);
   context.report.begin(task.number, request.scene, shots.size(), expected_images(task));
-  std::optional<render::Renderer> renderer;
+  std::optional<Renderers> renderers;
   for (const PlannedFile& file : files) {
     if (kept.contains(file.path)) {
       context.report.keep(file.path, file.shots.size());
       continue;
     }
     if (read) load(context, task, std::move(read));
-    if (!renderer) {
-      renderer.emplace(*context.engine);
-      prepare(context, task, *renderer, file.shots.front());
+    if (!renderers) {
+      renderers.emplace(*context.engine);
+      prepare(context, task, renderers->images, file.shots.front());
+      if (!task.background.is_rendered()) {
+        renderers->coverage.emplace(*context.engine, context.scene.resources, task);
+      }
     }
-    render_file(context, *renderer, task, file);
+    render_file(context, *renderers, task, file);
   }
   context.report.done();
 }

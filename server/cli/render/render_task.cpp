@@ -3,9 +3,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <charconv>
+#include <cmath>
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -104,6 +107,22 @@ void check_folder(const std::filesystem::path& folder) {
   if (access(folder.c_str(), W_OK | X_OK) != 0) refuse(std::strerror(errno));
 }
 
+/// "30,-10"
+std::array<float, 2> parse_orbit(const std::string& text) {
+  std::array<float, 2> angles{};
+  const char* const end = text.data() + text.size();
+  const auto first = std::from_chars(text.data(), end, angles[0]);
+  const bool split = first.ec == std::errc() && first.ptr != end && *first.ptr == ',';
+  const auto second = split ? std::from_chars(first.ptr + 1, end, angles[1]) : first;
+  const bool valid = split && second.ec == std::errc() && second.ptr == end &&
+                     std::abs(angles[0]) <= 360.0f && std::abs(angles[1]) <= 90.0f;
+  if (!valid) {
+    throw std::invalid_argument("--orbit " + text +
+                                ": must be AZIMUTH,ELEVATION in degrees, such as 30,20");
+  }
+  return angles;
+}
+
 void check_combination(const protocol::RenderRequest& request, bool timings) {
   if (request.frames && request.clip.empty() && !timings) {
     throw std::invalid_argument("--frames: needs --clip, or --timings; --turntable has its own");
@@ -114,16 +133,19 @@ void check_combination(const protocol::RenderRequest& request, bool timings) {
   if (request.view && !request.camera.empty()) {
     throw std::invalid_argument("view: camera names another one");
   }
+  if (request.orbit && (request.view || !request.camera.empty())) {
+    throw std::invalid_argument("--orbit: is a camera of its own; --camera and view are others");
+  }
   if (request.quality && request.buffer != "output") {
     throw std::invalid_argument("--quality: is that of the output, not of " + request.buffer);
   }
-  const auto named = render::check_buffer_name(request.buffer, "--buffer");
+  const auto named = render::check_buffer_name(request.buffer, "--buffer " + request.buffer);
   if (!named) throw std::invalid_argument(named.error().message);
 }
 
 Background background_of(const protocol::RenderRequest& request, FileFormat format) {
   const Background background(request.background);
-  if (background.is_sky()) return background;
+  if (background.is_rendered()) return background;
   if (request.buffer != "output") {
     throw std::invalid_argument("--background: the buffer " + request.buffer + " has its own");
   }
@@ -151,7 +173,10 @@ RenderTask make_task(const protocol::RenderRequest& request, std::size_t number,
                   .settings = settings_of(request, settings),
                   .background = background_of(request, format)};
   if (!name.is_standard_output()) check_folder(task.output.folder());
-  if (!task.background.is_sky()) task.settings.environment.visible = false;
+  if (task.background.is_blurred()) {
+    task.settings.background.show = protocol::BackgroundKind::blurred;
+  }
+  if (!task.background.is_rendered()) task.settings.environment.visible = false;
   return task;
 }
 
@@ -162,6 +187,7 @@ protocol::RenderRequest common_request(const RenderOptions& options) {
   if (!options.reference.empty()) {
     request.reference = protocol::enum_value<protocol::ReferenceScope>(options.reference);
   }
+  if (!options.orbit.empty()) request.orbit = parse_orbit(options.orbit);
   // With --timings these are the frames to measure.
   if (options.timings) request.frames.reset();
   return request;

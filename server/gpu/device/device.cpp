@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <exception>
 #include <fstream>
 #include <iterator>
 #include <vector>
@@ -46,6 +47,13 @@ std::string cache_name(VkPhysicalDevice device) {
   return name + ".bin";
 }
 
+void destroy(VkDevice device, VkSemaphore timeline, VkPipelineCache cache) {
+  if (!device) return;
+  vkDestroyPipelineCache(device, cache, nullptr);
+  vkDestroySemaphore(device, timeline, nullptr);
+  vkDestroyDevice(device, nullptr);
+}
+
 /// Lets tests lose the device: once for each time that they make the file that this names.
 bool loss_is_wanted() {
   const char* const file = std::getenv("HELIOGRAPH_TEST_DEVICE_LOSS");
@@ -61,17 +69,23 @@ Device::Device(const Instance& instance, const DeviceOptions& options) {
   }
   if (!report_.chosen) throw GpuError(refusal(reports));
   if (options.as_gpu) report_.type = VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU;
-  create(instance);
-  load_pipeline_cache(options.cache_folder);
+  try {
+    create(instance);
+    load_pipeline_cache(options.cache_folder);
+  } catch (...) {
+    destroy(handle_, timeline_, pipeline_cache_);  // what was made before the step that failed
+    throw;
+  }
 }
 
 Device::~Device() {
-  if (!handle_) return;
   vkDeviceWaitIdle(handle_);
-  save_pipeline_cache();
-  vkDestroyPipelineCache(handle_, pipeline_cache_, nullptr);
-  vkDestroySemaphore(handle_, timeline_, nullptr);
-  vkDestroyDevice(handle_, nullptr);
+  try {
+    save_pipeline_cache();
+  } catch (const std::exception&) {
+    // There is no memory for it: the next start compiles the pipelines again.
+  }
+  destroy(handle_, timeline_, pipeline_cache_);
 }
 
 void Device::create(const Instance& instance) {
@@ -146,9 +160,15 @@ void Device::save_pipeline_cache() const {
   if (vkGetPipelineCacheData(handle_, pipeline_cache_, &size, bytes.data()) != VK_SUCCESS) return;
   // Written beside and moved over, so that a second process never reads half a file.
   const auto temporary = cache_file_.string() + ".new";
-  std::ofstream(temporary, std::ios::binary).write(bytes.data(), static_cast<long>(size));
+  std::ofstream file(temporary, std::ios::binary);
+  file.write(bytes.data(), static_cast<long>(size));
+  file.close();
   std::error_code error;
-  std::filesystem::rename(temporary, cache_file_, error);
+  if (file) {
+    std::filesystem::rename(temporary, cache_file_, error);
+  } else {
+    std::filesystem::remove(temporary, error);  // the disk is full
+  }
 }
 
 std::uint32_t Device::memory_type(std::uint32_t allowed, VkMemoryPropertyFlags needed,

@@ -1,9 +1,6 @@
 #include "net/http/beast_messages.hpp"
 
 #include <algorithm>
-#include <cstdint>
-#include <filesystem>
-#include <system_error>
 #include <utility>
 
 namespace heliograph::net {
@@ -66,20 +63,15 @@ BeastResponse to_message(ServerContext& context, HttpResponse answer, const Fram
   BeastResponse message;
   set_head(message, context, answer, framing);
   if (is_bare(answer.status)) return message;
-  std::error_code gone;
-  const std::uintmax_t file_bytes = std::filesystem::file_size(answer.file, gone);
-  message.content_length(answer.file.empty() || gone ? answer.body.size() : file_bytes);
+  message.content_length(answer.content ? answer.content->size() : answer.body.size());
   if (!framing.head_only) message.body() = std::move(answer.body);
   return message;
 }
 
-std::optional<BeastFile> to_file_message(ServerContext& context, const HttpResponse& answer,
-                                         const Framing& framing) {
-  BeastFile message;
-  boost::system::error_code error;
-  message.body().open(answer.file.c_str(), beast::file_mode::scan, error);
-  if (error) return std::nullopt;
+BeastDownload to_download(ServerContext& context, HttpResponse answer, const Framing& framing) {
+  BeastDownload message;
   set_head(message, context, answer, framing);
+  message.body() = *std::move(answer.content);
   message.content_length(message.body().size());
   return message;
 }

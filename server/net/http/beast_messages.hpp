@@ -1,11 +1,10 @@
 #pragma once
 
-#include <boost/beast/http/file_body.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
-#include <optional>
 
 #include "net/connection.hpp"
+#include "net/download/content_body.hpp"
 #include "net/http/http_message.hpp"
 
 // Converts between the routes' messages and Beast's. For the sources of this folder only: it brings
@@ -15,7 +14,7 @@ namespace heliograph::net {
 
 using BeastRequest = beast::http::request<beast::http::string_body>;
 using BeastResponse = beast::http::response<beast::http::string_body>;
-using BeastFile = beast::http::response<beast::http::file_body>;
+using BeastDownload = beast::http::response<ContentBody>;
 
 HttpRequest to_request(BeastRequest&& message, const ClientStream& stream);
 
@@ -33,8 +32,7 @@ void set_usual_headers(beast::http::fields& message, const ServerContext& contex
 
 /// The response as it is written, with the headers of every response. Counts it.
 BeastResponse to_message(ServerContext& context, HttpResponse answer, const Framing& framing);
-/// The same of a response with a file; nothing if it cannot be opened.
-std::optional<BeastFile> to_file_message(ServerContext& context, const HttpResponse& answer,
-                                         const Framing& framing);
+/// The same of a response with content.
+BeastDownload to_download(ServerContext& context, HttpResponse answer, const Framing& framing);
 
 }  // namespace heliograph::net

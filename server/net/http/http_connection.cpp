@@ -1,6 +1,7 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
+#include <cerrno>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -17,6 +18,7 @@
 #include "net/websocket/paced_write.hpp"
 #include "net/websocket/upgrade_refusal.hpp"
 #include "protocol/messages/messages.hpp"
+#include "session/event_log.hpp"
 
 namespace heliograph::net {
 namespace {
@@ -53,6 +55,13 @@ HttpResponse upload_response(const session::UploadedScene& scene) {
       {"triangles", scene.triangles}}.dump());
   response.status = 201;
   return response;
+}
+
+/// Of the file that an upload is written to; all others are the connection's.
+bool is_of_disk(error_code error) {
+  return error == boost::system::errc::no_space_on_device ||
+         error == boost::system::errc::io_error ||
+         error == error_code(EDQUOT, asio::error::get_system_category());
 }
 
 class HttpConnection : public Connection, public std::enable_shared_from_this<HttpConnection> {
@@ -232,6 +241,11 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 
   void received_upload(error_code error) {
     const bool late = std::chrono::steady_clock::now() > upload_deadline_;
+    if (is_of_disk(error)) {
+      session::log_error({}, "an upload could not be written: " + error.message());
+      upload_.reset();
+      return send(error_response(protocol::error::full("the server's disk is full or has failed")));
+    }
     if (error || late) return upload_.reset();
     if (!upload_parser_->is_done()) return receive_upload();
     upload_parser_->get().body().close();
@@ -252,13 +266,28 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
       framing_.keep_alive = false;
       return send(text_response(413, "The request is too large."));
     }
-    if (!error) return answer();
+    if (!error) return answer_or_close();
     if (error == http::error::end_of_stream) return close();
     if (error.category() == http::make_error_code(http::error::bad_method).category()) {
       framing_.keep_alive = false;
       return send(text_response(400, "This is not an HTTP request."));
     }
     // Timed out or disconnected: no response can be sent.
+  }
+
+  /// Where there is no memory for the answer, the client may try again.
+  void answer_or_close() {
+    try {
+      answer();
+    } catch (const std::bad_alloc&) {
+      give_up();
+      throw;
+    }
+  }
+
+  void give_up() {
+    presence_timer_.cancel();
+    if (stream_.has_socket()) stream_.next_layer().close();
   }
 
   void answer() {
@@ -287,12 +316,22 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     watch_client(pending);
     context_.router.handle(request, pending,
                            [self = shared_from_this(), pending](HttpResponse response) {
-                             run_later(self->stream_.get_executor(),
-                                       [self, pending, response = std::move(response)]() mutable {
-                                         self->presence_timer_.cancel();
-                                         self->send(std::move(response));
-                                       });
+                             self->send_later(std::move(response), pending);
                            });
+  }
+
+  /// From any thread.
+  void send_later(HttpResponse response, const std::shared_ptr<protocol::PendingAnswer>& pending) {
+    try {
+      run_later(stream_.get_executor(),
+                [self = shared_from_this(), pending, response = std::move(response)]() mutable {
+                  self->presence_timer_.cancel();
+                  self->send(std::move(response));
+                });
+    } catch (const std::bad_alloc&) {
+      pending->abandon();  // watch_client() closes the connection
+      throw;
+    }
   }
 
   /// Gives the answer up once the client has closed the connection: its frames would be rendered in
@@ -302,6 +341,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     on_expiry(presence_timer_,
               [self = shared_from_this(), answer = std::move(answer)](error_code error) mutable {
                 if (error) return;
+                if (answer->abandoned()) return self->give_up();
                 if (peer_has_closed(self->stream_.next_layer().socket().native_handle())) {
                   return answer->abandon();
                 }
@@ -348,7 +388,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   }
 
   void send(HttpResponse answer) {
-    if (!answer.file.empty() && !framing_.head_only) return send_file(answer);
+    if (answer.content && !framing_.head_only) return send_content(std::move(answer));
     if (!outgoing_.has_room(answer.body.size())) {
       answer = retry_later("Too many responses wait to be read by other clients.");
     }
@@ -361,13 +401,12 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
                 [self = shared_from_this()](error_code error) { self->sent(error); });
   }
 
-  void send_file(const HttpResponse& answer) {
-    file_ = to_file_message(context_, answer, framing_);
-    if (!file_) return send(text_response(404, "The file is gone."));
-    file_serializer_.emplace(*file_);
+  void send_content(HttpResponse answer) {
+    download_ = to_download(context_, std::move(answer), framing_);
+    download_serializer_.emplace(*download_);
     const PaceKeeper keeper({.timeout = idle_timeout, .bytes_per_second = min_bytes_per_second},
                             PaceKeeper::Clock::now());
-    write_paced(stream_, *file_serializer_, keeper,
+    write_paced(stream_, *download_serializer_, keeper,
                 [self = shared_from_this()](error_code error) { self->sent(error); });
   }
 
@@ -375,8 +414,8 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     answering_ = false;
     serializer_.reset();
     response_ = {};
-    file_serializer_.reset();
-    file_.reset();
+    download_serializer_.reset();
+    download_.reset();
     outgoing_.hold(0);
     if (error) return;
     if (!framing_.keep_alive || shutting_down_) return close();
@@ -419,8 +458,8 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   OutgoingBytes outgoing_{context_.outgoing_bytes};
   BeastResponse response_;
   std::optional<http::response_serializer<http::string_body>> serializer_;
-  std::optional<BeastFile> file_;
-  std::optional<http::response_serializer<http::file_body>> file_serializer_;
+  std::optional<BeastDownload> download_;
+  std::optional<http::response_serializer<ContentBody>> download_serializer_;
   RateLimit calls_;
   bool first_ = true;
   bool answering_ = false;

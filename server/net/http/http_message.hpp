@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -9,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "net/download/content.hpp"
 #include "protocol/result.hpp"
 
 namespace heliograph::net {
@@ -35,7 +35,7 @@ struct HttpResponse {
   std::string content_type = "text/plain; charset=utf-8";
   std::string body;
   Headers headers;
-  std::filesystem::path file{};  // sent instead of the body; empty: none
+  std::optional<Content> content{};  // sent instead of the body
 };
 
 /// One line of plain text.
@@ -69,7 +69,7 @@ std::vector<std::string_view> header_elements(std::string_view value, char separ
 
 /// Whether browsers show a page of ours at this path, and need a token to do so.
 inline bool is_page(std::string_view path) {
-  return path == "/" || path == "/api";
+  return path == "/" || path == "/api" || path == "/jobs";
 }
 
 }  // namespace heliograph::net

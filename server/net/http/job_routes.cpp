@@ -1,13 +1,20 @@
 #include "net/http/job_routes.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <array>
+#include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <utility>
+#include <vector>
 
+#include "net/download/byte_range.hpp"
+#include "net/download/zip_archive.hpp"
 #include "net/http/image_request.hpp"
 #include "net/http/router.hpp"
 #include "protocol/methods.hpp"
@@ -18,10 +25,11 @@ namespace {
 namespace methods = protocol::methods;
 using protocol::Result;
 
-/// The parts of "/api/v1/jobs/ID/files/NAME".
+/// The parts of "/api/v1/jobs/ID/files/NAME" or "/api/v1/jobs/ID/results.zip".
 struct JobAddress {
   std::string id;
-  std::string file;  // empty: the job itself
+  std::string file;  // empty: the job itself, or
+  bool archive = false;
 };
 
 /// Nothing for a path that is none of them.
@@ -31,8 +39,11 @@ std::optional<JobAddress> job_address(std::string_view path) {
   path.remove_prefix(1);
   constexpr std::string_view files = "/files/";
   const std::size_t split = path.find('/');
-  if (split == std::string_view::npos) return JobAddress{.id = std::string(path), .file = {}};
+  JobAddress address{.id = std::string(path.substr(0, split)), .file = {}};
+  if (split == std::string_view::npos) return address;
   std::string_view rest = path.substr(split);
+  address.archive = rest == "/results.zip";
+  if (address.archive) return address;
   if (!rest.starts_with(files) || rest.size() == files.size()) return std::nullopt;
   rest.remove_prefix(files.size());
   // In a path a plus is a plus.
@@ -40,7 +51,8 @@ std::optional<JobAddress> job_address(std::string_view path) {
   for (const char c : rest) encoded += c == '+' ? "%2B" : std::string(1, c);
   const auto decoded = parse_query(encoded + "=");
   if (decoded.empty()) return std::nullopt;
-  return JobAddress{.id = std::string(path.substr(0, split)), .file = decoded.begin()->first};
+  address.file = decoded.begin()->first;
+  return address;
 }
 
 template <class Method, class Response>
@@ -93,10 +105,60 @@ std::string content_type_of(const std::string& name) {
   return "application/octet-stream";
 }
 
-HttpResponse job_file(const JobAddress& address, jobs::JobQueue& jobs) {
+/// What a browser may keep, if it asks each time whether it is still the same.
+HttpResponse downloadable(std::string content_type, Content content, std::uint64_t version) {
+  const std::string etag = fmt::format("\"{:x}-{:x}\"", version, content.size());
+  return {.content_type = std::move(content_type),
+          .body = {},
+          .headers = {{"ETag", etag}, {"Cache-Control", "private, no-cache"}},
+          .content = std::move(content)};
+}
+
+HttpResponse job_file(const HttpRequest& request, const JobAddress& address, jobs::JobQueue& jobs) {
   const auto file = jobs.file(address.id, address.file);
   if (!file) return error_response(file.error());
-  return {.content_type = content_type_of(address.file), .body = {}, .headers = {}, .file = *file};
+  const std::filesystem::path path = jobs.path_of(address.id, *file);
+  std::error_code gone;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, gone);
+  if (gone) return text_response(404, "The file is gone.");
+  Content content;
+  content.add_file(path, bytes);
+  return requested_part(request,
+                        downloadable(content_type_of(file->name), std::move(content), file->crc));
+}
+
+/// The name of a job's archive, of characters that every file system takes.
+std::string archive_name(const protocol::JobInfo& job) {
+  std::string name;
+  for (const char c : job.name.value_or("job-" + job.job)) {
+    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    name += plain || c == '-' || c == '_' ? c : '_';
+  }
+  return name + ".zip";
+}
+
+/// The files that are complete by now.
+HttpResponse job_archive(const HttpRequest& request, const JobAddress& address,
+                         jobs::JobQueue& jobs) {
+  const auto job = jobs.status(address.id);
+  if (!job) return error_response(job.error());
+  const auto files = jobs.files(address.id);
+  if (!files) return error_response(files.error());
+  if (files->empty()) return text_response(404, "The job has no files yet.");
+  std::vector<ZipEntry> entries;
+  std::uint64_t version = 0;
+  for (const jobs::StoredFile& file : *files) {
+    entries.push_back({.name = file.name,
+                       .file = jobs.path_of(address.id, file),
+                       .bytes = file.bytes,
+                       .crc = file.crc});
+    version = 31 * version + file.crc;
+  }
+  HttpResponse response =
+      downloadable("application/zip", zip_archive(entries, job->created), version);
+  response.headers.emplace_back("Content-Disposition",
+                                "attachment; filename=\"" + archive_name(*job) + "\"");
+  return requested_part(request, std::move(response));
 }
 
 HttpResponse only(std::string allowed) {
@@ -111,7 +173,8 @@ HttpResponse answer(const HttpRequest& request, const JobAddress& address, jobs:
     if (request.method == "POST") return create_job(request, jobs);
     return reads ? list_jobs(request, jobs) : only("GET and POST");
   }
-  if (!address.file.empty()) return reads ? job_file(address, jobs) : only("GET");
+  if (!address.file.empty()) return reads ? job_file(request, address, jobs) : only("GET");
+  if (address.archive) return reads ? job_archive(request, address, jobs) : only("GET");
   if (request.method == "DELETE") return as_json<methods::job_cancel>(jobs.cancel(address.id));
   return reads ? as_json<methods::job_status>(jobs.status(address.id)) : only("GET and DELETE");
 }

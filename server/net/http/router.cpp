@@ -39,7 +39,9 @@ HttpResponse method_not_allowed(std::string allowed) {
 }
 
 std::optional<HttpResponse> asset(const HttpRequest& request) {
-  const web::Asset* file = web::find_asset(request.path == "/api" ? "api.html" : request.path);
+  // Pages of their own have the names of their addresses.
+  const bool page = is_page(request.path) && request.path != "/";
+  const web::Asset* file = web::find_asset(page ? request.path + ".html" : request.path);
   if (!file) return std::nullopt;
   HttpResponse response;
   for (const std::string_view tag : header_elements(request.header("if-none-match"))) {

@@ -92,7 +92,7 @@ class ViewerConnection : public Connection,
     handshake_.version(11);
     for (const auto& [name, value] : request.headers) handshake_.set(name, value);
     socket_.async_accept(handshake_, IoHandler([self = shared_from_this()](error_code error) {
-                           if (!error) self->accepted();
+                           if (!error) self->or_end([&] { self->accepted(); });
                          }));
   }
 
@@ -102,23 +102,28 @@ class ViewerConnection : public Connection,
 
   void frame_ready() override {
     if (announced_.exchange(true)) return;
-    run_later(socket_.get_executor(), [self = shared_from_this()] {
-      self->announced_ = false;
-      self->write_next();
-    });
+    try {
+      run_later(socket_.get_executor(), [self = shared_from_this()] {
+        self->announced_ = false;
+        self->or_end([&] { self->write_next(); });
+      });
+    } catch (const std::bad_alloc&) {
+      announced_ = false;
+      throw;
+    }
   }
 
   void send(std::string text, std::string_view key) override {
     run_later(socket_.get_executor(), [self = shared_from_this(), text = std::move(text),
                                        key = std::string(key)]() mutable {
-      self->enqueue(std::move(text), std::move(key));
+      self->or_end([&] { self->enqueue(std::move(text), std::move(key)); });
     });
   }
 
   void disconnect(std::string why) override {
     run_later(socket_.get_executor(), [self = shared_from_this(), why = std::move(why)] {
       self->session_end_reason_ = why;
-      self->write_next();
+      self->or_end([&] { self->write_next(); });
     });
   }
 
@@ -127,6 +132,16 @@ class ViewerConnection : public Connection,
     std::string text;
     std::string key;
   };
+
+  /// A viewer that there is no memory for is disconnected; it may come again.
+  template <class Work>
+  void or_end(const Work& work) {
+    try {
+      work();
+    } catch (const std::bad_alloc&) {
+      ended(make_error_code(boost::system::errc::not_enough_memory));
+    }
+  }
 
   void accepted() {
     const auto joined = context_.host.sessions().enter(session_, weak_from_this(), view_only_);
@@ -145,7 +160,7 @@ class ViewerConnection : public Connection,
 
   void read() {
     socket_.async_read(incoming_, IoHandler([self = shared_from_this()](error_code error) {
-                         self->received(error);
+                         self->or_end([&] { self->received(error); });
                        }));
   }
 
@@ -182,12 +197,22 @@ class ViewerConnection : public Connection,
         *text, caller, [text, pending, weak = weak_from_this()](std::string answer) {
           const auto self = weak.lock();
           if (!self || answer.empty()) return;
-          if (answer.size() <= small_answer) return self->send(std::move(answer), {});
-          run_later(self->socket_.get_executor(),
-                    [self, text, pending, answer = std::move(answer)]() mutable {
-                      self->enqueue_large(std::move(answer), *text);
-                    });
+          try {
+            self->send_answer(std::move(answer), text, pending);
+          } catch (const std::bad_alloc&) {
+            self->answer_lost_ = true;  // check_liveness() ends the connection
+            throw;
+          }
         });
+  }
+
+  void send_answer(std::string answer, const std::shared_ptr<const std::string>& message,
+                   const std::shared_ptr<protocol::PendingAnswer>& pending) {
+    if (answer.size() <= small_answer) return send(std::move(answer), {});
+    run_later(socket_.get_executor(),
+              [self = shared_from_this(), message, pending, answer = std::move(answer)]() mutable {
+                self->or_end([&] { self->enqueue_large(std::move(answer), *message); });
+              });
   }
 
   void enqueue_large(std::string answer, std::string_view message) {
@@ -256,12 +281,17 @@ class ViewerConnection : public Connection,
     liveness_timer_.expires_after(liveness_interval);
     on_expiry(liveness_timer_, [self = shared_from_this()](error_code error) {
       if (error || self->closing_) return;
+      if (self->answer_lost_) {
+        return self->ended(make_error_code(boost::system::errc::not_enough_memory));
+      }
       const std::uint64_t write = self->writing_ ? self->writes_ : 0;
       const auto verdict =
           self->liveness_.check(Liveness::Clock::now(), write, self->acknowledged_bytes());
       if (verdict == Liveness::Verdict::lost) return self->ended(beast::error::timeout);
-      if (verdict == Liveness::Verdict::silent && !self->pinging_) self->ping();
-      self->check_liveness();
+      self->or_end([&] {
+        if (verdict == Liveness::Verdict::silent && !self->pinging_) self->ping();
+        self->check_liveness();
+      });
     });
   }
 
@@ -272,9 +302,10 @@ class ViewerConnection : public Connection,
   }
 
   void write(asio::const_buffer first, asio::const_buffer second) {
-    socket_.async_write(
-        std::array{first, second},
-        IoHandler([self = shared_from_this()](error_code error) { self->written(error); }));
+    socket_.async_write(std::array{first, second},
+                        IoHandler([self = shared_from_this()](error_code error) {
+                          self->or_end([&] { self->written(error); });
+                        }));
   }
 
   void write_next() {
@@ -391,6 +422,7 @@ class ViewerConnection : public Connection,
   bool writing_ = false;
   bool closing_ = false;
   std::atomic<bool> announced_ = false;
+  std::atomic<bool> answer_lost_ = false;  // there was no memory to send it
 };
 
 }  // namespace

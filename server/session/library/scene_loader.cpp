@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <malloc.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <exception>
@@ -185,11 +186,26 @@ std::shared_ptr<SceneLoader::Job> SceneLoader::find_job(const SceneKey& key) con
 }
 
 void SceneLoader::run() {
-  while (const std::shared_ptr<Job> job = next_job()) {
-    fail_waiters_of_ended_sessions();
-    if (!job->cancelled) run_job(*job);
+  while (!stopping_) {
+    std::shared_ptr<Job> job;
+    try {
+      job = next_job();
+      if (!job) return;
+      fail_waiters_of_ended_sessions();
+      if (!job->cancelled) run_job(*job);
+    } catch (const std::exception& failure) {
+      // There is no memory to tell those who wait; their calls are answered when the job is freed.
+      spdlog::error("the scene loader: {}", failure.what());
+      if (job) drop(*job);
+    }
     trim_pending_ = true;
   }
+}
+
+void SceneLoader::drop(Job& job) {
+  const std::lock_guard lock(mutex_);
+  job.waiters.clear();
+  std::erase_if(jobs_, [&](const auto& other) { return other.get() == &job; });
 }
 
 /// Waits for a job, and trims cache and memory while there is none; null on shutdown.

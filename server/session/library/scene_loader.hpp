@@ -83,6 +83,7 @@ class SceneLoader {
 
   void run();
   std::shared_ptr<Job> next_job();
+  void drop(Job& job);
   void run_job(Job& job);
   std::string sessions_of(const Job& job);
   LoadedScene load_scene(Job& job);

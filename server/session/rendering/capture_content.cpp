@@ -60,15 +60,25 @@ void add_normals(std::vector<ExrChannel>& channels, const render::FloatImage& im
   }
 }
 
+/// Buffers have 0 where nothing is.
+float distance_or_infinity(float view_z) {
+  return view_z > 0.0f ? view_z : std::numeric_limits<float>::infinity();
+}
+
+void show_background_depth(render::FloatImage& image, std::size_t index) {
+  for (std::size_t i = index; i < image.rgba.size(); i += 4) {
+    image.rgba[i] = distance_or_infinity(image.rgba[i]);
+  }
+}
+
 void add_motion(std::vector<ExrChannel>& channels, const render::FloatImage& image) {
   const auto scaled = [](int index, float factor) {
     return [index, factor](Texel texel) { return texel[index] * factor; };
   };
   channels.push_back(channel("motion.X", image, scaled(0, static_cast<float>(image.width))));
   channels.push_back(channel("motion.Y", image, scaled(1, static_cast<float>(image.height))));
-  channels.push_back(channel("depth.Z", image, [](Texel texel) {
-    return texel[3] > 0.0f ? texel[3] : std::numeric_limits<float>::infinity();
-  }));
+  channels.push_back(
+      channel("depth.Z", image, [](Texel texel) { return distance_or_infinity(texel[3]); }));
 }
 
 void add_albedo(std::vector<ExrChannel>& channels, const render::FloatImage& image) {
@@ -138,6 +148,10 @@ std::vector<std::uint8_t> image_file(const render::Frame& frame, ImageFormat for
 
 }  // namespace
 
+bool is_complete_at_once(std::string_view buffer) {
+  return buffer.starts_with("gbuffer.");
+}
+
 bool reads_other_buffers(std::string_view buffer, ImageFormat format) {
   if (buffer == radiance_buffer) return false;
   return buffer != output_buffer || format == ImageFormat::exr;
@@ -175,6 +189,8 @@ Result<CaptureContent> read_content(render::Renderer& renderer, std::string_view
   }
   auto values = renderer.capture(buffer);
   if (!values) return values.error();
+  if (buffer == "gbuffer.motion.view_z") show_background_depth(*values, 0);
+  if (buffer == "gbuffer.motion") show_background_depth(*values, 3);
   const std::uint32_t width = values->width, height = values->height;
   if (format == ImageFormat::npy || buffer != output_buffer) {
     return CaptureContent{width, height, *std::move(values)};

@@ -18,7 +18,8 @@ namespace heliograph::session {
 ///
 /// png, jpeg and webp: the debug view of the buffer. npy: its values: `output` as uint8 of shape
 /// (height, width, 3), sRGB; every other buffer as float32, or uint32 for integers, of shape
-/// (height, width), or (height, width, channels) for more than one channel. exr: the values as
+/// (height, width), or (height, width, channels) for more than one channel; view-space distances
+/// are infinite in the background. exr: the values as
 /// channels R, G, B, A, or Y for one channel; for `output` the radiance before exposure and tone
 /// mapping, with the G-buffer as layers.
 struct CaptureContent {
@@ -26,6 +27,9 @@ struct CaptureContent {
   std::uint32_t height = 0;
   std::variant<render::Frame, render::FloatImage, std::vector<stream::ExrChannel>> values;
 };
+
+/// Whether one frame shows all of the buffer: those of the G-buffer have no noise.
+bool is_complete_at_once(std::string_view buffer);
 
 /// Whether read_content() reads buffers that not every frame keeps: render::Renderer::keep_buffers.
 bool reads_other_buffers(std::string_view buffer, protocol::ImageFormat format);

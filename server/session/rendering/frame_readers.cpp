@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <memory>
+#include <string>
 #include <utility>
 
+#include "session/event_log.hpp"
 #include "session/measurements.hpp"
 #include "session/rendering/capture_content.hpp"
 
@@ -21,6 +24,20 @@ bool shows_state_since(const ReadableFrame& frame, Clock::time_point moment) {
   if (!frame.newest) return false;
   if (frame.lockstep) return frame.stepped;
   return frame.shows_state && (!frame.state.animation.playing || frame.began >= moment);
+}
+
+/// An error where there is no memory for the file: its caller waits for an answer.
+Result<Capture> encoded(const CaptureContent& content, protocol::ImageFormat format,
+                        std::uint32_t samples) {
+  try {
+    return Capture{.width = content.width,
+                   .height = content.height,
+                   .samples = samples,
+                   .file = encode_content(content, format)};
+  } catch (const std::exception& failure) {
+    log_error({}, std::string("a capture could not be encoded: ") + failure.what());
+    return protocol::error::internal();
+  }
 }
 
 }  // namespace
@@ -123,7 +140,8 @@ bool FrameReaders::is_ready(const PendingCapture& capture, const ReadableFrame& 
   if (newest.width != state.width || newest.height != state.height) return false;
   if (state.animation.playing || !frame.renderer.needs_frame()) return true;
   const std::optional<std::uint32_t>& samples = capture.request.samples;
-  return samples && newest.samples >= *samples;
+  if (!samples) return is_complete_at_once(capture.request.buffer);
+  return newest.samples >= *samples;
 }
 
 /// False if too many files are being written already.
@@ -137,10 +155,7 @@ bool FrameReaders::write(CaptureRequest& request, const ReadableFrame& frame) {
   capture_writer_.post([request = std::move(request), samples = frame.newest->frame.samples,
                         content = std::make_shared<CaptureContent>(*std::move(content)),
                         &written = written_] {
-    request.done(Capture{.width = content->width,
-                         .height = content->height,
-                         .samples = samples,
-                         .file = encode_content(*content, request.format)});
+    request.done(encoded(*content, request.format, samples));
     written.notify();
   });
   return true;

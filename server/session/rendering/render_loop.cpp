@@ -22,6 +22,7 @@ constexpr unsigned most_encoding_threads = 8;
 constexpr unsigned most_preparing_threads = 4;
 constexpr std::size_t max_queued_captures = 4;
 constexpr std::size_t max_queued_preparations = 64;
+constexpr std::chrono::milliseconds pause_without_memory{100};
 
 /// On a GPU half of the processors encode; where they draw the frames, one thread is enough.
 std::size_t encoding_threads(const render::DeviceInfo& device) {
@@ -118,15 +119,25 @@ void RenderLoop::on_first_frame(std::function<void()> callback) {
 
 void RenderLoop::run() {
   while (!stopping_) {
-    remove_closed();
-    if (loss_reported_.exchange(false) && device_ready_) on_device_lost("outside of rendering");
-    const Views views = open_views();
-    if (!device_ready_ && !recover_device(views)) continue;
-    if (advance_next(views) || finish_frame() || !device_ready_) continue;
-    auto due = next_due(views);
-    if (held_back_until_) due = due ? std::min(*due, *held_back_until_) : *held_back_until_;
-    wake_->wait_until(due);
+    try {
+      advance_or_wait();
+    } catch (const std::exception& failure) {
+      // There is no memory for the loop itself. Other threads may free some.
+      spdlog::error("the render loop: {}", failure.what());
+      std::this_thread::sleep_for(pause_without_memory);
+    }
   }
+}
+
+void RenderLoop::advance_or_wait() {
+  remove_closed();
+  if (loss_reported_.exchange(false) && device_ready_) on_device_lost("outside of rendering");
+  const Views views = open_views();
+  if (!device_ready_ && !recover_device(views)) return;
+  if (advance_next(views) || finish_frame() || !device_ready_) return;
+  auto due = next_due(views);
+  if (held_back_until_) due = due ? std::min(*due, *held_back_until_) : *held_back_until_;
+  wake_->wait_until(due);
 }
 
 RenderLoop::Views RenderLoop::open_views() {

@@ -50,6 +50,7 @@ class RenderLoop {
   using Views = std::vector<std::shared_ptr<SessionView>>;
 
   void run();
+  void advance_or_wait();
   Views open_views();
   void remove_closed();
   bool advance_next(const Views& views);

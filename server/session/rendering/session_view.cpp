@@ -142,6 +142,8 @@ SessionView::Work SessionView::advance(bool may_draw) {
 /// by what was requested before the next one.
 SessionView::Work SessionView::advance_step(bool may_draw) {
   session_->timeline().fail_abandoned_steps();
+  // Lockstep may have been left and entered again since.
+  if (session_->timeline().reset_count() != state_.reset_count) newest_stepped_ = false;
   if (!newest_stepped_) readers_.fail_before_first_step();
   readers_.answer_probes(readable_frame(true));
   if (readers_.answer_captures(readable_frame(true))) return Work::small;
@@ -165,10 +167,10 @@ SessionView::Work SessionView::advance_step(bool may_draw) {
 std::optional<Clock::time_point> SessionView::next_due() const {
   if (preparing_.valid()) return std::nullopt;
   std::optional<Clock::time_point> due = session_->viewers().next_send();
-  if (session_->timeline().in_lockstep()) return due;
   const auto consider = [&](Clock::time_point time) { due = due ? std::min(*due, time) : time; };
-  if (const auto transition = next_view_transition(view_inputs())) consider(*transition);
   if (retry_at_ > Clock::now()) consider(retry_at_);
+  if (session_->timeline().in_lockstep()) return due;
+  if (const auto transition = next_view_transition(view_inputs())) consider(*transition);
   if (renderer_) consider(std::max(needed_at_ + services_.release_after, retry_at_));
   return due;
 }
@@ -212,8 +214,9 @@ bool SessionView::moves() const {
 /// A GPU has to copy it, which takes as long as a fast frame; and frames that come this often need
 /// nothing between them.
 bool SessionView::depth_pays() const {
-  return engine_.device().type == protocol::DeviceType::cpu ||
-         full_frame_time_ == Clock::duration::zero() || full_frame_time_ >= frame_time_for_depth;
+  if (full_frame_time_ == Clock::duration::zero()) return true;
+  return full_frame_time_ >= frame_time_for_depth ||
+         engine_.device().type == protocol::DeviceType::cpu;
 }
 
 bool SessionView::is_full_size() const {

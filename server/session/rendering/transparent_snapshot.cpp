@@ -1,7 +1,7 @@
 #include "session/rendering/transparent_snapshot.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "session/rendering/transparency.hpp"
 #include "stream/encoders/png_encoder.hpp"
 
 namespace heliograph::session {
@@ -22,35 +23,7 @@ using nlohmann::json;
 using protocol::Result;
 using File = std::vector<std::uint8_t>;
 
-/// As many steps as edges have.
-constexpr std::uint32_t coverage_samples = 32;
-
 constexpr std::size_t radiance_channels = 4;
-
-/// Settings in which only the background sends light.
-json without_light(const char* background) {
-  const json off{{"enabled", false}};
-  return {
-      {"environment", {{"visible", true}}},
-      {"background", {{"show", "color"}, {"color", background}}},
-      {"lighting",
-       {{"direct", false},
-        {"environment_diffuse", false},
-        {"environment_specular", false},
-        {"emissive", false}}},
-      {"shadows", off},
-      {"specular", off},
-      {"indirect", off},
-      {"ambient", {{"occlusion", false}}},
-      {"antialiasing", {{"temporal", false}, {"jitter", true}}},
-      {"accumulation",
-       {{"enabled", true},
-        {"max_samples", coverage_samples},
-        {"by_noise", false},
-        {"blend_samples", 0}}},
-      {"reference", {{"use", "off"}}},
-  };
-}
 
 /// The values after the header of an npy file, format version 1.0.
 std::span<const std::uint8_t> values_of(const File& npy) {
@@ -60,21 +33,11 @@ std::span<const std::uint8_t> values_of(const File& npy) {
   return header > npy.size() ? std::span<const std::uint8_t>() : std::span(npy).subspan(header);
 }
 
-float green(std::span<const std::uint8_t> pixels, std::size_t pixel) {
-  float value = 0.0f;
-  std::memcpy(&value, &pixels[(radiance_channels * pixel + 1) * sizeof(float)], sizeof value);
-  return value;
-}
-
-/// A color over black, sRGB, as it is without the black that covers the rest of the pixel.
-std::uint8_t uncovered(std::uint8_t value, float coverage) {
-  const float encoded = static_cast<float>(value) / 255.0f;
-  const float light =
-      encoded <= 0.04045f ? encoded / 12.92f : std::pow((encoded + 0.055f) / 1.055f, 2.4f);
-  const float full = std::min(light / coverage, 1.0f);
-  const float result =
-      full <= 0.0031308f ? 12.92f * full : 1.055f * std::pow(full, 1.0f / 2.4f) - 0.055f;
-  return static_cast<std::uint8_t>(std::lround(255.0f * result));
+std::vector<float> radiance_of(const File& npy) {
+  const auto bytes = values_of(npy);
+  std::vector<float> values(bytes.size() / sizeof(float));
+  std::memcpy(values.data(), bytes.data(), values.size() * sizeof(float));
+  return values;
 }
 
 /// The size in the header of an npy file: "'shape': (270, 480, 3)".
@@ -96,20 +59,18 @@ std::optional<File> combine_transparent(const File& colors, const File& over_whi
   const auto size = size_of(colors);
   if (!size || size_of(over_white) != size || size_of(over_black) != size) return std::nullopt;
   const std::size_t pixels = std::size_t{size->first} * size->second;
-  const auto rgb = values_of(colors), white = values_of(over_white), black = values_of(over_black);
-  const std::size_t floats = radiance_channels * pixels * sizeof(float);
+  const auto rgb = values_of(colors);
+  const auto white = radiance_of(over_white), black = radiance_of(over_black);
+  const std::size_t floats = radiance_channels * pixels;
   if (rgb.size() != 3 * pixels || white.size() != floats || black.size() != floats) {
     return std::nullopt;
   }
   std::vector<std::uint8_t> rgba(4 * pixels);
   for (std::size_t i = 0; i < pixels; ++i) {
-    const float coverage = std::clamp(1.0f - (green(white, i) - green(black, i)), 0.0f, 1.0f);
-    const auto alpha = static_cast<std::uint8_t>(std::lround(255.0f * coverage));
-    for (std::size_t channel = 0; channel < 3 && alpha > 0; ++channel) {
-      rgba[4 * i + channel] = uncovered(rgb[3 * i + channel], coverage);
-    }
-    rgba[4 * i + 3] = alpha;
+    std::copy_n(rgb.begin() + static_cast<std::ptrdiff_t>(3 * i), 3,
+                rgba.begin() + static_cast<std::ptrdiff_t>(4 * i));
   }
+  put_background(rgba, coverage_of(white, black), std::nullopt);
   return stream::encode_png({.width = size->first, .height = size->second, .rgba = rgba},
                             stream::Alpha::kept);
 }
@@ -122,14 +83,14 @@ class TransparentCapture : public std::enable_shared_from_this<TransparentCaptur
         own_settings_(copy_->settings().settings.value()),
         request_(std::move(request)) {}
 
-  Result<void> begin() { return capture_coverage("#ffffff", over_white_); }
+  Result<void> begin() { return capture_coverage(CoverageBackground::white, over_white_); }
 
  private:
-  Result<void> capture_coverage(const char* background, File& into) {
+  Result<void> capture_coverage(CoverageBackground background, File& into) {
     CaptureRequest request{.buffer = "output.radiance",
                            .format = protocol::ImageFormat::npy,
                            .samples = coverage_samples};
-    return capture(without_light(background), std::move(request), into);
+    return capture(coverage_settings(background), std::move(request), into);
   }
 
   Result<void> capture_colors() {
@@ -160,7 +121,8 @@ class TransparentCapture : public std::enable_shared_from_this<TransparentCaptur
       newest.file = *std::move(file);
       return request_.done(std::move(newest));
     }
-    accepted = over_black_.empty() ? capture_coverage("#000000", over_black_) : capture_colors();
+    accepted = over_black_.empty() ? capture_coverage(CoverageBackground::black, over_black_)
+                                   : capture_colors();
     if (!accepted) request_.done(accepted.error());
   }
 

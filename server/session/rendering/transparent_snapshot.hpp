@@ -8,9 +8,6 @@ namespace heliograph::session {
 
 /// Captures a session's image as a PNG file whose background is transparent. The session shows
 /// other images meanwhile and keeps its settings changed: it is a copy that ends afterwards.
-///
-/// Coverage is what a white background shows more than a black one, in samples without any light,
-/// which take hardly any time; the colors are those over a black background, divided by it.
 protocol::Result<void> request_transparent_capture(const std::shared_ptr<Session>& copy,
                                                    CaptureRequest capture);
 

@@ -26,11 +26,13 @@ vec3 gathered_light(Ray ray, Hit hit, RadianceCacheConstants c, out bool known) 
   HitSurface s = hit_surface(hit, ray.direction, hit.t * gathering_spread);
   vec3 light = gathered_emission(ray, hit, s);
   if (is_unlit(s)) return light;
-  SurfaceMaterial m = material_of(s, ray.direction);
+  SurfaceMaterial m = material_of(s, -mean_cosine * s.normal);
   SeenPlace at = SeenPlace(s.position, s.geometric, dot(s.front, s.geometric) < 0.0);
   CachedLight cached = cached_light(at, hit.t, c);
   known = cached.known;
-  // Specular lobes send on what they get, as if it came from everywhere.
+  // Specular lobes send on what they get to everywhere, and as much as of light that comes at the
+  // mean angle: the eye's own would be right for light from everywhere. Most rays that meet a floor
+  // near a wall graze it, where it shines of what is opposite, and not of the sun above it.
   vec3 albedo = wide_albedo(m) + m.specular_albedo;
   light += albedo * (cached.direct + cached.indirect);
   return light * (scene_has(scene_blends) ? stopped_weight(s) : 1.0);

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 
 #include "render/passes/compose/compose.hpp"
@@ -12,7 +13,8 @@
 namespace heliograph::test {
 namespace {
 
-/// A corner with spheres, lit by 200 lights of every kind.
+/// A corner with spheres, lit by 200 lights of every kind. None is so near to a wall that a small
+/// part of a cell has most of the light.
 std::shared_ptr<const scene::Scene> lit_corner() {
   SceneBuilder builder;
   const auto wall = surface({0.8f, 0.7f, 0.6f}, 0.4f, 0.3f);
@@ -30,7 +32,8 @@ std::shared_ptr<const scene::Scene> lit_corner() {
     light.type = i % 3 == 0 ? shared::light_spot : shared::light_point;
     if (i == 100) light.type = shared::light_directional;
     if (i == 150) light.type = shared::light_disk;
-    light.position = {place(generator), 0.5f + 4.0f * unit(generator), place(generator)};
+    light.position = {place(generator), 2.0f + 3.0f * unit(generator),
+                      std::max(place(generator), -4.0f)};
     light.direction = glm::normalize(glm::vec3(unit(generator) - 0.5f, -1.0f, -unit(generator)));
     light.tangent = {1, 0, 0};
     light.color = glm::vec3(unit(generator), unit(generator), unit(generator)) * 0.12f;
@@ -60,13 +63,14 @@ class KernelComparison {
       const auto& in = with_host_kernels(rig_, host);
       auto& plan = rig_.plan();
       Signals made;
-      made.shadows = render::trace_shadows(plan, in, gbuffer, {});
-      made.specular = render::trace_specular(plan, in, gbuffer);
-      const render::NoisySignals noisy{made.shadows, made.shadows, made.specular, {}};
-      made.hdr = render::compose(plan, in, gbuffer, noisy, {}, background).hdr;
       if (indirect) {
         const auto cache = render::update_radiance_cache(plan, in);
         made.indirect = render::trace_indirect(plan, in, gbuffer, cache, {});
+      } else {
+        made.shadows = render::trace_shadows(plan, in, gbuffer, {});
+        made.specular = render::trace_specular(plan, in, gbuffer);
+        const render::NoisySignals noisy{made.shadows, made.shadows, made.specular, {}};
+        made.hdr = render::compose(plan, in, gbuffer, noisy, {}, background).hdr;
       }
       signals_.push_back(made);
     }
@@ -139,14 +143,13 @@ std::array<double, 2> gathered(bool by_grid) {
   return sums;
 }
 
-// Which place of a cell is updated depends on the order of the shaders' threads: the exact sums of
-// runs with the same numbers differ by up to 3 %. Those of the kernels are always the same.
+// Which place of a cell is updated depends on the order of the shaders' threads: the sums of runs
+// with the same numbers differ by half a percent. Those of the kernels are always the same.
 TEST_F(LightGridKernel, CellsOfTheRadianceCacheGatherTheLightOfAllLights) {
-  constexpr std::array<double, 2> spread{0.06, 0.02};
   const auto exact = gathered(false), by_grid = gathered(true);
   EXPECT_GT(exact[0], 0.004);
   for (std::size_t i = 0; i < 2; ++i) {
-    EXPECT_NEAR(by_grid[i] / exact[i], 1.0, spread[i])
+    EXPECT_NEAR(by_grid[i] / exact[i], 1.0, 0.02)
         << (i ? "kernels" : "shaders") << ' ' << exact[0] << ' ' << exact[1] << ' ' << by_grid[i];
   }
 }

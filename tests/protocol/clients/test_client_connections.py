@@ -68,6 +68,12 @@ class Mishaps(ServerTestCase):
         await view._connection._socket.close()
 
 
+class NoServer(unittest.TestCase):
+    def test_the_address_that_does_not_answer_is_told(self):
+        with self.assertRaisesRegex(ConnectionError, "no server answers at http://127.0.0.1:1: .*serve starts one"):
+            heliograph.connect("http://127.0.0.1:1")
+
+
 class PrivateAuthority(unittest.TestCase):
     def test_a_private_authority_is_trusted_with_an_ssl_context(self):
         with tempfile.TemporaryDirectory() as folder:

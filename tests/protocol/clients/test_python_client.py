@@ -146,7 +146,6 @@ class Library(ServerTestCase):
             numpy.testing.assert_allclose(depth.target, camera["target"], atol=1e-6)
             self.assertAlmostEqual(depth.vertical_fov, camera["vertical_fov"], places=4)
             view_z = view.array("gbuffer.motion.view_z")
-            view_z = numpy.where(view_z > 0, view_z, numpy.inf)
             surfaces = 0
             for row in range(depth.height):
                 for column in range(depth.width):

@@ -1,6 +1,7 @@
 """A viewer: one WebSocket, requests with answers, notifications, frames with acknowledgement."""
 
 import asyncio
+import base64
 import contextlib
 import json
 import math
@@ -42,13 +43,17 @@ class Viewer:
     """Use with `async with`. Acknowledges every frame by default."""
 
     def __init__(self, server, *, acknowledge=True, greet=True, session=None, name=None,
-                 port=None):
+                 port=None, token=None):
         self.server = server
         self.url = f"ws://{server.host}:{port}/ws" if port else server.websocket_url
         self.acknowledge = acknowledge
         self.greet = greet
         self.session = session
         self.name = name
+        self.subprotocols = [SUBPROTOCOL]
+        if token:
+            secret = base64.urlsafe_b64encode(token.encode()).decode().rstrip("=")
+            self.subprotocols.append(f"{SUBPROTOCOL}.token.{secret}")
         self.frames = asyncio.Queue()
         self.last = None  # the newest frame that was looked at
         self.frames_received = 0
@@ -61,7 +66,7 @@ class Viewer:
     async def __aenter__(self):
         url = self.url + (f"?session={self.session}" if self.session else "")
         self.socket = await websockets.connect(url, max_size=None, ssl=self.server.tls,
-                                               subprotocols=[SUBPROTOCOL], compression=None)
+                                               subprotocols=self.subprotocols, compression=None)
         self._reader = asyncio.create_task(self._read())
         if self.greet:
             person = {"name": self.name} if self.name else {}
@@ -106,7 +111,8 @@ class Viewer:
             return
         waiting = self._answers.pop(message.get("id"), None) if isinstance(message, dict) else None
         if waiting:
-            waiting.set_result(message)
+            if not waiting.done():  # its caller may have given up
+                waiting.set_result(message)
         else:
             self.unasked.put_nowait(message)
 

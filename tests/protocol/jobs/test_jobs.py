@@ -4,11 +4,13 @@ import asyncio
 import hashlib
 import hmac
 import http.server
+import io
 import json
 import os
 import tempfile
 import threading
 import time
+import zipfile
 
 from harness.images import decode_png
 from harness.server import Server, ServerTestCase
@@ -149,6 +151,47 @@ class Jobs(ServerTestCase):
         self.assertEqual(self.client.request("GET", "/api/v1/jobs/0123456789abcdef")[0], 404)
         self.assertEqual(self.client.request("PUT", "/api/v1/jobs/" + done["job"])[0], 405)
 
+    def test_parts_of_files_can_be_asked_for(self):
+        """As video players and download managers do."""
+        done = self.client.wait(self.client.create(small(output="a.png")))
+        url = done["files"][0]["url"]
+        _, fields, whole = self.client.request("GET", url)
+        self.assertEqual(fields["accept-ranges"], "bytes")
+        status, part_fields, part = self.client.request("GET", url, Range="bytes=10-19")
+        self.assertEqual((status, part, part_fields["content-range"]),
+                         (206, whole[10:20], f"bytes 10-19/{len(whole)}"))
+        status, _, rest = self.client.request("GET", url, **{"Range": "bytes=10-", "If-Range": fields["etag"]})
+        self.assertEqual((status, rest), (206, whole[10:]))
+        status, _, again = self.client.request("GET", url, **{"Range": "bytes=10-", "If-Range": '"other"'})
+        self.assertEqual((status, again), (200, whole))
+        status, beyond, _ = self.client.request("GET", url, Range=f"bytes={len(whole)}-")
+        self.assertEqual((status, beyond["content-range"]), (416, f"bytes */{len(whole)}"))
+        self.assertEqual(self.client.request("GET", url, **{"If-None-Match": fields["etag"]})[0], 304)
+        status, head, _ = self.client.request("HEAD", url, Range="bytes=10-19")
+        self.assertEqual((status, head["content-length"]), (200, str(len(whole))))
+
+    def test_all_files_come_as_an_archive(self):
+        done = self.client.wait(self.client.create(small(output="ä/a b.png"), small(output="c.jpg"),
+                                                   name="Shop: 1/2"))
+        url = f"/api/v1/jobs/{done['job']}/results.zip"
+        status, fields, archive = self.client.request("GET", url)
+        self.assertEqual((status, fields["content-type"]), (200, "application/zip"))
+        self.assertEqual(fields["content-disposition"], 'attachment; filename="Shop__1_2.zip"')
+        self.assertEqual(fields["content-length"], str(len(archive)))
+        with zipfile.ZipFile(io.BytesIO(archive)) as files:
+            self.assertIsNone(files.testzip())
+            self.assertEqual(sorted(files.namelist()), ["c.jpg", "ä/a b.png"])
+            for file in done["files"]:
+                self.assertEqual(files.read(file["name"]), self.client.request("GET", file["url"])[2])
+            made = time.mktime((*files.infolist()[0].date_time, 0, 0, 0)) - time.timezone
+            self.assertLess(abs(made - done["created"]), 3)
+        half = len(archive) // 2
+        status, _, rest = self.client.request("GET", url, Range=f"bytes={half}-")
+        self.assertEqual((status, rest), (206, archive[half:]))
+        self.assertEqual(self.client.request("GET", url.replace(done["job"], "nowhere"))[0], 404)
+        empty = self.client.wait(self.client.create(small(output="a.png", clip="no")))
+        self.assertEqual(self.client.request("GET", f"/api/v1/jobs/{empty['job']}/results.zip")[0], 404)
+
     def test_a_key_creates_one_job(self):
         first = self.client.create(small(), headers={"Idempotency-Key": "order 7"})
         again = self.client.create(small(), headers={"Idempotency-Key": "order 7"})
@@ -256,6 +299,7 @@ class KilledServer(ServerTestCase):
         server, client = self.serve("--view-token", VIEW)
         job = client.wait(client.create(small(output="a.png")))
         self.assertEqual(client.request("GET", job["files"][0]["url"], token=VIEW)[0], 200)
+        self.assertEqual(client.request("GET", f"/api/v1/jobs/{job['job']}/results.zip", token=VIEW)[0], 200)
         self.assertEqual(client.request("GET", job["files"][0]["url"], token="guessed")[0], 401)
         self.assertEqual(client.request("POST", "/api/v1/jobs", {"entries": [small()]}, token=VIEW)[0], 403)
         self.assertEqual(client.request("DELETE", "/api/v1/jobs/" + job["job"], token=VIEW)[0], 403)

@@ -95,6 +95,8 @@ class RenderSets(unittest.TestCase):
                               ("entry 2: --background", {"background": "green"}),
                               ("entry 2: --background.*transparent",
                                {"background": "transparent", "output": "a.jpg"}),
+                              ("entry 2: --orbit", {"orbit": [0, 0], "camera": "1"}),
+                              ("entry 2: margin", {"margin": 0.5}),
                               ("entry 2: .*frame", {"output": "a{frame}.mp4"})):
             with self.subTest(saying):
                 entries = self.entries(2)
@@ -156,6 +158,18 @@ class RenderSets(unittest.TestCase):
         self.assertRegex(err, r"cannot write /dev/full: No space left")
         self.assertEqual(self.images(), ["1.png"])
 
+    def test_an_orbit_sees_the_whole_scene(self):
+        entry = {"scene": self.mirror, "width": 48, "height": 48, "samples": 1, "buffer": "gbuffer.instance"}
+        code, _, err = self.run_render("--manifest", self.manifest([
+            {**entry, "output": f"{name}.npy", "orbit": [0, elevation], "margin": 0.2}
+            for name, elevation in (("front", 0), ("above", 90))]))
+        self.assertEqual((code, err), (0, ""))
+        for name in ("front", "above"):
+            shown = numpy.argwhere(numpy.load(self.path(name + ".npy")) > 0)
+            # Within the margin of .2 of 48 pixels, and as large as it allows on one axis.
+            self.assertGreaterEqual(shown.min(), 9)
+            self.assertLessEqual(shown.max(), 39)
+
     def test_a_background_replaces_the_sky(self):
         model = Model(self.mirror)
         model.save(self.path("scene.glb"))
@@ -167,8 +181,14 @@ class RenderSets(unittest.TestCase):
             {**base, "output": "green.png", "background": "#00ff00"},
             {**base, "output": "clear.webp", "background": "transparent"},
             {"scene": "scene.glb", "width": 32, "height": 16, "samples": 2, "output": "front.png",
-             "background": "#00ff00"}]))
+             "background": "#00ff00"},
+            *({**base, "output": f"{background}.png", "background": background}
+              for background in ("sky", "blurred"))]))
         self.assertEqual((code, err), (0, ""))
+        sky, blurred = (numpy.frombuffer(decode_png(self.bytes_of(name)).rgb, numpy.uint8).astype(float)
+                        for name in ("sky.png", "blurred.png"))
+        self.assertGreater(numpy.abs(sky - blurred).max(), 2)
+        self.assertLess(blurred.std(), sky.std())
         green = bytes([0, 255, 0])
         self.assertEqual(bytes(decode_png(self.bytes_of("green.png")).rgb), 32 * 16 * green)
         self.assertIn(b"ALPH", self.bytes_of("clear.webp"))

@@ -56,6 +56,15 @@ class Lockstep(ServerTestCase):
         self.assertEqual(state["frames"], 5)
         self.assertAlmostEqual(state["seconds"], 3 * DT + 1.0)
 
+    def test_frames_of_an_earlier_lockstep_are_not_captured(self):
+        self.step(2)
+        # At once: the render thread does not see the session outside of lockstep.
+        calls = [("frame.run", {}), ("frame.step", {"frames": 0, "dt": 0}), ("frame.capture", {})]
+        _, answers = self.server.post_rpc([
+            {"jsonrpc": "2.0", "id": number, "method": method, "params": params}
+            for number, (method, params) in enumerate(calls)])
+        self.assert_error({one["id"]: one for one in answers}[2], -32050)
+
     def test_a_clip_advances_by_steps_only(self):
         self.step(0)
         self.server.call("animation.play", {"clip": "hop", "rate": 2.0})

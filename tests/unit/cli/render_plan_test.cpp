@@ -82,6 +82,41 @@ TEST(Shots, ASceneWithoutCamerasIsShownAsAWhole) {
   EXPECT_NE(failure(options, scene).find("no cameras"), std::string::npos);
 }
 
+TEST(Shots, AnOrbitAndAFitShowTheWholeScene) {
+  protocol::RenderRequest options;
+  options.orbit = {90.0f, 0.0f};
+  const scene::Camera right = plan_shots(box(), options).at(0).camera;
+  EXPECT_EQ(right.name, "orbit");
+  EXPECT_NEAR(glm::normalize(right.eye - right.target).x, 1.0f, 1e-6f);
+  EXPECT_EQ(right.target, glm::vec3(1.0f, 0.0f, 0.0f));
+  options.margin = 0.25;
+  EXPECT_GT(plan_shots(box(), options).at(0).camera.eye.x, right.eye.x + 1.0f);
+  options.orbit.reset();
+  EXPECT_NE(failure(options).find("--fit"), std::string::npos) << "the scene has cameras";
+  options.fit = true;
+  options.camera = "all";
+  const auto shots = plan_shots(box(), options);
+  ASSERT_EQ(shots.size(), 2u);
+  EXPECT_EQ(shots[1].camera.name, "side");
+  EXPECT_NEAR(glm::normalize(shots[1].camera.eye - shots[1].camera.target).x, 1.0f, 1e-6f);
+}
+
+TEST(Shots, AFittedTurntableHasOneDistanceForAllFrames) {
+  scene::Scene scene = box();
+  scene.cameras.clear();
+  scene.bounds.include(glm::vec3(9.0f, 0.0f, 0.0f));
+  protocol::RenderRequest options;
+  const float still =
+      glm::length(plan_shots(scene, options).at(0).camera.eye - glm::vec3(4.5f, 0, 0));
+  options.turntable = 8;
+  const auto shots = plan_shots(scene, options);
+  const float first = glm::distance(shots.at(0).camera.eye, scene.bounds.center());
+  EXPECT_GT(first, still) << "its long side comes into view";
+  for (const Shot& shot : shots) {
+    EXPECT_NEAR(glm::distance(shot.camera.eye, scene.bounds.center()), first, 1e-3f);
+  }
+}
+
 TEST(Shots, FramesOfAClipFollowEachOther) {
   protocol::RenderRequest options;
   options.clip = "wave";

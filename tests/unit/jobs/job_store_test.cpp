@@ -55,7 +55,7 @@ TEST_F(Store, WhatWasRunningIsQueuedAgainWithItsFiles) {
     JobStore store(file());
     id = *store.create(request(), 1.0);
     store.begin(2.0);
-    store.add_file(id, "a.png", 70);
+    store.add_file(id, {.name = "a.png", .bytes = 70, .crc = 7});
   }
   for (std::uint32_t attempts = 1; attempts < 5; ++attempts) {
     JobStore store(file());
@@ -106,10 +106,12 @@ TEST_F(Store, ExpiredJobsAreForgottenWithTheirFiles) {
   const std::string id = *store.create(request(), 1.0);
   const std::string waiting = *store.create(request(), 1.0);
   store.begin(1.0);
-  store.add_file(id, "a b.png", 30);
-  store.add_file(id, "a b.png", 40);
+  store.add_file(id, {.name = "a b.png", .bytes = 30, .crc = 1});
+  store.add_file(id, {.name = "a b.png", .bytes = 40, .crc = 0xfedcba98});
   EXPECT_EQ(store.bytes(), 40u);
   EXPECT_EQ(store.find(id)->files.at(0).url, "/api/v1/jobs/" + id + "/files/a%20b.png");
+  EXPECT_EQ(store.file(id, "a b.png")->crc, 0xfedcba98);
+  EXPECT_EQ(store.files(id).at(0).bytes, 40u);
   const protocol::JobFailure failure{.entry = 2, .scene = "helmet", .reason = "is broken"};
   store.end(id, {.state = JobState::partial, .failures = {failure}}, 2.0, 10.0);
   EXPECT_EQ(store.find(id)->failures.at(0), failure);

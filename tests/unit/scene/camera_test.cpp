@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
+
+#include "scene/camera_choice.hpp"
 
 namespace heliograph::scene {
 namespace {
@@ -80,6 +83,35 @@ TEST(CameraFit, FramesWholeBoxTightly) {
       EXPECT_GT(extent, 0.8f);
     }
   }
+}
+
+TEST(CameraFit, CamerasOfATurnHaveOneDistanceAndTheMargin) {
+  Bounds bounds;
+  bounds.include(glm::vec3(-4, 0, -1));
+  bounds.include(glm::vec3(4, 2, 1));
+  std::vector<glm::vec3> directions;
+  for (int i = 0; i < 8; ++i) directions.push_back(orbit_direction(45.0f * i, 20.0f));
+  directions.push_back(orbit_direction(0.0f, 90.0f));
+  const float margin = 0.2f;
+  const auto cameras = fit_cameras(bounds, directions, {.aspect = 1.5f, .margin = margin});
+  float extent = 0.0f;
+  for (const Camera& camera : cameras) {
+    EXPECT_NEAR(glm::distance(camera.eye, bounds.center()),
+                glm::distance(cameras[0].eye, bounds.center()), 1e-4f);
+    for (int i = 0; i < 8; ++i) {
+      const glm::vec3 corner(i & 1 ? 4 : -4, i & 2 ? 2 : 0, i & 4 ? 1 : -1);
+      const glm::vec3 seen = project(camera, 1.5f, corner);
+      extent = std::max({extent, std::abs(seen.x), std::abs(seen.y)});
+    }
+  }
+  // Twice the margin of an image that is two units wide.
+  EXPECT_NEAR(extent, 1.0f - 2.0f * margin, 1e-3f);
+}
+
+TEST(CameraFit, AzimuthTurnsToTheRightAndElevationLifts) {
+  EXPECT_LT(glm::distance(orbit_direction(0, 0), glm::vec3(0, 0, 1)), 1e-6f);
+  EXPECT_LT(glm::distance(orbit_direction(90, 0), glm::vec3(1, 0, 0)), 1e-6f);
+  EXPECT_LT(glm::distance(orbit_direction(0, 90), glm::vec3(0, 1, 0)), 1e-6f);
 }
 
 TEST(CameraFit, EmptySceneHasDefaultCamera) {

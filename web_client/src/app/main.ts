@@ -4,6 +4,7 @@ import { Comparison } from "../compare/comparison.ts";
 import { fileStem, outputActions } from "../output/output_actions.ts";
 import { createSaveDialog } from "../output/save_dialog.ts";
 import { createEmbedDialog } from "../output/embed_dialog.ts";
+import { createRenderDialog } from "../output/render_dialog.ts";
 import { reportToEmbeddingPage } from "../embed/embedding_page.ts";
 import { mountFirstHint } from "../overlay/first_hint.ts";
 import { createHelp } from "../overlay/help.ts";
@@ -98,12 +99,19 @@ function main(): void {
     fileStem: () => fileStem(viewer),
     inform,
   });
+  const jobsPage = (): string => viewer.connection.address.url("jobs").href;
+  const renderDialog = createRenderDialog(find<HTMLDialogElement>("render"), viewer, {
+    fileStem: () => fileStem(viewer),
+    jobsPage,
+  });
   const embedDialog = createEmbedDialog(find<HTMLDialogElement>("embed"), viewer, inform);
   const help = createHelp(find<HTMLDialogElement>("help"));
   const panel = mountPanel(find("panel"), viewer, {
     output: outputActions(viewer, {
       recordingButton: find("recording"),
       save: saveDialog.open,
+      render: renderDialog.open,
+      jobsPage,
       embed: embedDialog.open,
       inform,
     }),

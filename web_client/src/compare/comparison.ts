@@ -55,7 +55,7 @@ export class Comparison {
       const copied = parts.edits();
       const { name } = await rpc.request(
         "session.create",
-        { copy_of: source, idle_timeout: 60 },
+        { copy_of: source, idle_timeout: 30 },
         createTimeoutMs,
       );
       if (generation !== this.generation) {

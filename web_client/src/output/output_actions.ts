@@ -13,6 +13,10 @@ interface OutputHost {
   recordingButton: HTMLElement;
   /** Opens the dialog that saves an image. */
   save(): void;
+  /** Opens the dialog that has the server render the view. */
+  render(): void;
+  /** The page of jobs. */
+  jobsPage(): string;
   /** Opens the dialog with code for other pages. */
   embed(): void;
   /** Shows the result as one sentence. */
@@ -35,6 +39,12 @@ export function outputActions(viewer: Viewer, host: OutputHost): MenuItem[] {
   mountRecordingButton(recorder, host.recordingButton, toggleRecording);
   return [
     { label: "Save image", icon: "save", run: host.save },
+    {
+      label: "Render this view",
+      icon: "image",
+      run: host.render,
+      isAvailable: () => viewer.capabilities.jobs && viewer.hello?.role === "control",
+    },
     {
       label: "Copy image",
       icon: "copy",
@@ -66,6 +76,12 @@ export function outputActions(viewer: Viewer, host: OutputHost): MenuItem[] {
       }),
     },
     { label: "Embed in another page", icon: "code", run: host.embed },
+    {
+      label: "Jobs of this server",
+      icon: "external",
+      run: () => window.open(host.jobsPage(), "_blank", "noopener"),
+      isAvailable: () => viewer.capabilities.jobs,
+    },
     {
       label: "API of this server",
       icon: "external",

@@ -9,7 +9,7 @@ const createTimeoutMs = 120_000;
 const statsIntervalMs = 250;
 const smallestQuality = 10;
 /** If the page closes during a capture. */
-const idleSeconds = 60;
+const idleSeconds = 30;
 
 interface SizedCapture {
   width: number;

@@ -83,7 +83,7 @@ export class ScenePreviews {
     let session: string | null = null;
     try {
       const settings = { accumulation: { max_samples: samples } };
-      const params = { scene, settings, idle_timeout: 60, ...size };
+      const params = { scene, settings, idle_timeout: 30, ...size };
       const { rpc } = this.viewer;
       session = (await rpc.request("session.create", params, createTimeoutMs)).name;
       const url = this.viewer.connection.address.url(`api/v1/sessions/${session}/frame.jpg`);

@@ -18,6 +18,8 @@ export class ServerCapabilities {
   readonly presets = new Signal<PresetInfo[]>([]);
   /** Names of the server's methods. */
   readonly methods = new Signal<ReadonlySet<string>>(new Set());
+  /** Whether the server renders jobs. */
+  jobs = false;
   private readonly rpc: RpcPeer;
   /** Frames to draw before the list of buffers is read again; null: it is up to date. */
   private framesUntilRead: number | null = null;
@@ -40,6 +42,9 @@ export class ServerCapabilities {
     this.methods.set(new Set(openrpc.methods.map(({ name }) => name)));
     this.captureFormats.set(new Set(choicesOf(openrpc, "frame.capture", "format")));
     this.presets.set(presets);
+    // A server without jobs refuses to list them.
+    const list = this.has("job.list") && this.rpc.request("job.list", { limit: 1 });
+    this.jobs = list !== false && (await list.then(() => true).catch(() => false));
   }
 
   /** The list of buffers depends on the scene and on settings. */

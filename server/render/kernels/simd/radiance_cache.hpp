@@ -106,7 +106,7 @@ class GatheredLight {
     constexpr float spread = 0.25f;  // gathering_spread of gathered_light.glsl
     const auto s =
         hit_surface<Surface, true>(job_.scene, hit, ray.direction, hit.t * number(spread));
-    const auto m = material_of(s, ray.direction, tables_);
+    const auto m = material_of(s, s.normal * number(-shared::mean_cosine), tables_);
     const Mask unlit = hn::And(hit.met, s.has(shared::material_unlit));
     const Mask probes = hn::Gt(ray.user.x, zero());
     const Mask lit = hn::AndNot(hn::Or(unlit, probes), hit.met);
