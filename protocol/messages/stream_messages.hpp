@@ -139,6 +139,7 @@ struct StatsFrame {
   StreamCodec codec = StreamCodec::jpeg;
   std::uint32_t quality = 0;
   double scale = 1.0;
+  PassKind encoder = PassKind::host;
   double round_trip_ms = 0.0;
   double goodput = 0.0;
   std::vector<PassTiming> passes;
@@ -164,6 +165,8 @@ struct StatsFrame {
         field("scale", &StatsFrame::scale,
               "Scale of moving frames chosen for this viewer, relative to the full size.")
             .range(0, 1),
+        field("encoder", &StatsFrame::encoder,
+              "What encoded the frame: the host, or the device that rendered it."),
         field("round_trip_ms", &StatsFrame::round_trip_ms,
               "Time from sending a frame to this viewer to its acknowledgement.")
             .unit("milliseconds"),

@@ -1063,6 +1063,8 @@ export interface FrameStats {
   codec: "jpeg" | "h264";
   /** Time to encode the frame. [milliseconds] */
   encode_ms: number;
+  /** What encoded the frame: the host, or the device that rendered it. */
+  encoder: "device" | "host";
   /** Frames rendered in the last second. */
   fps: number;
   /** Time to render the frame. [milliseconds] */

@@ -30,6 +30,11 @@ std::filesystem::path cache_folder() {
   return {};
 }
 
+render::JpegEncoding jpeg_encoding(const std::string& name) {
+  if (name == "on") return render::JpegEncoding::on;
+  return name == "off" ? render::JpegEncoding::off : render::JpegEncoding::automatic;
+}
+
 }  // namespace
 
 render::EngineOptions engine_options(const DeviceOptions& options) {
@@ -37,7 +42,8 @@ render::EngineOptions engine_options(const DeviceOptions& options) {
           .tracer = options.tracer,
           .validation = std::getenv("HELIOGRAPH_VALIDATION") != nullptr,
           .cache_folder = cache_folder(),
-          .shader_folder = options.shader_dir};
+          .shader_folder = options.shader_dir,
+          .jpeg = jpeg_encoding(options.gpu_jpeg)};
 }
 
 std::unique_ptr<render::Engine> make_engine(const DeviceOptions& options) {

@@ -72,6 +72,16 @@ void add_shader_option(CLI::App& command, DeviceOptions& options) {
       ->group("Device");
 }
 
+void add_jpeg_option(CLI::App& command, DeviceOptions& options) {
+  command
+      .add_option("--gpu-jpeg", options.gpu_jpeg,
+                  "Whether the device encodes the JPEG frames that all viewers of a session "
+                  "share, so that no pixels are copied from it; automatic: on GPUs")
+      ->check(one_of({"automatic", "on", "off"}))
+      ->capture_default_str()
+      ->group("Device");
+}
+
 CLI::Validator preset_name() {
   std::vector<std::string> presets;
   for (const protocol::Preset& preset : protocol::presets()) presets.emplace_back(preset.name);

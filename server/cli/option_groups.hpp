@@ -16,6 +16,7 @@ CLI::Validator one_of(const std::vector<std::string>& names);
 
 void add_device_options(CLI::App& command, DeviceOptions& options);
 void add_shader_option(CLI::App& command, DeviceOptions& options);
+void add_jpeg_option(CLI::App& command, DeviceOptions& options);
 void add_settings_options(CLI::App& command, SettingsOptions& options);
 /// Accepts the name of a preset.
 CLI::Validator preset_name();

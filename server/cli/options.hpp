@@ -21,6 +21,7 @@ struct DeviceOptions {
   std::string device;
   std::string tracer = "auto";
   std::string shader_dir;  // empty: the embedded shaders
+  std::string gpu_jpeg = "automatic";
 };
 
 struct SettingsOptions {

@@ -238,6 +238,7 @@ CLI::App* add_serve(CLI::App& app, ServeOptions& options) {
   add_settings_options(*command, options.settings);
   add_device_options(*command, options.device);
   add_shader_option(*command, options.device);
+  add_jpeg_option(*command, options.device);
   add_limit_options(*command, options.limits);
   add_log_options(*command, options.log);
   command

@@ -18,6 +18,7 @@ struct RenderTotals {
 
   stream::Histogram frames;  // seconds each
   stream::Histogram encodings;
+  std::map<protocol::PassKind, std::uint64_t> encoded_by;
   stream::Histogram captures;  // from the request to the file
   std::uint64_t failed_captures = 0;
   std::map<Pass, stream::Histogram> by_pass;
@@ -38,9 +39,10 @@ class Measurements {
     totals_.passes = std::move(passes);
     totals_.radiance_cache = radiance_cache;
   }
-  void encoded(double seconds) {
+  void encoded(double seconds, protocol::PassKind by) {
     const std::lock_guard lock(mutex_);
     totals_.encodings.add(seconds);
+    ++totals_.encoded_by[by];
   }
   void captured(double seconds) {
     const std::lock_guard lock(mutex_);

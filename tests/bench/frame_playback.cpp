@@ -46,11 +46,13 @@ std::vector<render::Frame> draw_frames(int count) {
 FramePlayback::FramePlayback(session::SessionHost& host, std::vector<render::Frame> frames,
                              double rate)
     : worker_("encoder", 1),
-      broadcast_(host.sessions().main(), {.encoder = worker_,
-                                          .jpeg = jpeg_,
-                                          .measurements = measurements_,
-                                          .wake = wakeup_,
-                                          .tracer = host.engine().tracer()}),
+      broadcast_(host.sessions().main(),
+                 {.encoder = worker_,
+                  .jpeg = jpeg_,
+                  .measurements = measurements_,
+                  .wake = wakeup_,
+                  .tracer = host.engine().tracer(),
+                  .read_pixels = [] { return std::vector<std::uint8_t>(); }}),
       interval_(
           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate))) {
   for (render::Frame& frame : frames) {

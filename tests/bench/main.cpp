@@ -36,6 +36,7 @@ struct Options {
   int frames = 16;
   int warm_up = 24;  // until histories are long and most pixels leave samples out
   float draw_scale = 1.0f;
+  int jpeg = 0;  // quality; 0: frames come as pixels
   bool still = false;
   bool shaders = false;
 };
@@ -192,6 +193,7 @@ nlohmann::json measure(render::Engine& engine, RecordingTracer& tracer, const sc
   }
   Run run(engine, resources, extent, settings);
   run.renderer.set_draw_scale(options.draw_scale);
+  if (options.jpeg > 0) run.renderer.request_jpeg(options.jpeg);
   const scene::Camera camera = first_camera(scene, extent);
   for (int i = 0; i < options.warm_up + options.frames; ++i) {
     for (Run* each : {&run, shaders ? &*shaders : nullptr}) {
@@ -219,7 +221,10 @@ nlohmann::json measure(render::Engine& engine, RecordingTracer& tracer, const sc
 }
 
 void run(const Options& options) {
-  render::Engine engine({.device = options.device, .tracer = options.tracer});
+  render::Engine engine(
+      {.device = options.device,
+       .tracer = options.tracer,
+       .jpeg = options.jpeg > 0 ? render::JpegEncoding::on : render::JpegEncoding::off});
   auto recording = std::make_unique<RecordingTracer>(std::move(engine.parts().tracer));
   RecordingTracer& tracer = *recording;
   engine.parts().tracer = std::move(recording);
@@ -271,6 +276,9 @@ int main(int argc, char** argv) {
   app.add_option("--draw-scale", options.draw_scale,
                  "fraction of width and height that frames are drawn at and reconstructed from")
       ->check(CLI::Range(0.1f, 1.0f));
+  app.add_option("--jpeg", options.jpeg,
+                 "the device encodes every frame at this quality, in place of copying its pixels")
+      ->check(CLI::Range(1, 100));
   app.add_option("--set", options.settings, "path=value, as `heliograph render` takes it");
   app.add_option("--preset", options.preset, "a preset, as `heliograph render` takes it");
   app.add_option("--environment", options.environment, "the sky; otherwise white");

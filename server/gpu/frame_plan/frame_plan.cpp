@@ -275,8 +275,12 @@ const Buffer& FramePlan::get(BufferRef buffer) const {
   return *resources_[buffer.index].buffers[parity_];
 }
 
-std::vector<std::uint8_t> FramePlan::read() const {
+std::vector<std::uint8_t> FramePlan::read() {
   if (!readback_) return {};
+  if (!std::exchange(came_back_, true) && readback_.copies()) {
+    device_.submit_once(
+        [this](VkCommandBuffer commands) { readback_.record(commands, latest(read_back_)); });
+  }
   return readback_.read<std::uint8_t>(latest(read_back_));
 }
 

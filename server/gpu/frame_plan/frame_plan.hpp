@@ -238,9 +238,11 @@ class FramePlan {
   /// with one texel for each square of `side` by `side` pixels.
   void reduced(std::uint32_t side, const std::function<void()>& declare);
 
-  /// The one image that comes back to the host with every frame, through read().
-  void read_back(ImageRef image) {
+  /// The one image that comes back to the host with every frame, or with those where `when` is
+  /// true, through read().
+  void read_back(ImageRef image, std::function<bool()> when = {}) {
     read_back_ = image;
+    read_back_when_ = std::move(when);
     keep(image);
   }
 
@@ -263,8 +265,9 @@ class FramePlan {
   bool in_flight() const { return submitted_.has_value(); }
   /// Whether the frame that runs is canceled: what a pass writes is not read any more. Thread safe.
   bool is_canceled() const;
-  /// The frame that just ran, as read_back() asked for it: level 0, rows tightly packed.
-  std::vector<std::uint8_t> read() const;
+  /// The frame that just ran, as read_back() asked for it: level 0, rows tightly packed. Where it
+  /// did not come back by itself, the device copies it now.
+  std::vector<std::uint8_t> read();
   /// Of every pass, in order; below 0 where it did not run.
   const std::vector<PassTiming>& timings() const { return timings_; }
   /// The work behind the timings of the frame that just ran, in the same order. Copies counts back
@@ -362,7 +365,9 @@ class FramePlan {
   std::unique_ptr<DescriptorPool> descriptor_pool_;
   Sampler default_sampler_;
   ImageRef read_back_;
+  std::function<bool()> read_back_when_;  // empty: in every frame
   Readback readback_;
+  bool came_back_ = false;  // with the frame that runs or just ran
   VkCommandPool command_pool_ = VK_NULL_HANDLE;
   std::vector<VkCommandBuffer> commands_;   // one for each submit of a frame
   std::size_t submits_ = 0;                 // of this frame so far

@@ -46,7 +46,8 @@ bool FramePlan::begin(const std::function<bool()>& canceled) {
   const bool finished = run_passes();
   asks_canceled_ = nullptr;
   if (!finished) return false;
-  if (readback_.copies()) readback_.record(recorder(), get(read_back_));
+  came_back_ = readback_ && (!read_back_when_ || read_back_when_());
+  if (came_back_ && readback_.copies()) readback_.record(recorder(), get(read_back_));
   submit();
   begun_ = true;
   return true;

@@ -173,7 +173,14 @@ void add_streams(Page& page, const session::SessionHost& host) {
 void add_rendering(Page& page, const session::SessionHost& host) {
   const session::RenderTotals render = host.render_totals();
   page.histogram("heliograph_render_seconds", "Rendering, each frame.", render.frames);
-  page.histogram("heliograph_encode_seconds", "Encoding, each frame.", render.encodings);
+  page.histogram("heliograph_encode_seconds", "Encoding on the host, or taking what is encoded.",
+                 render.encodings);
+  page.describe("heliograph_frames_encoded_total", "By what encoded them.", "counter");
+  for (const auto by : {protocol::PassKind::device, protocol::PassKind::host}) {
+    const auto known = render.encoded_by.find(by);
+    page.sample("heliograph_frames_encoded_total", {{"kind", protocol::enum_name(by)}},
+                known == render.encoded_by.end() ? 0.0 : static_cast<double>(known->second));
+  }
   page.histogram("heliograph_capture_seconds", "From asking for a capture to its file.",
                  render.captures);
   page.counter("heliograph_captures_failed_total",

@@ -16,6 +16,13 @@
 
 namespace heliograph::render {
 
+/// Whether the device encodes frames as JPEG for viewers.
+enum class JpegEncoding {
+  automatic,  // on GPUs: a processor is faster with its own instructions
+  on,
+  off,
+};
+
 struct EngineOptions {
   std::string device;                   // part of a device's name, or empty: the best there is
   std::string tracer = "auto";          // auto, or a protocol::TracerKind
@@ -25,6 +32,7 @@ struct EngineOptions {
   bool as_gpu = false;                  // treat a processor as a GPU, for tests of that path
   std::filesystem::path shader_folder;  // GLSL compiled at run time; empty: the embedded shaders.
                                         // Host kernels, which are not made of them, are off then.
+  JpegEncoding jpeg = JpegEncoding::automatic;
 };
 
 /// What came of shader files that had changed.
@@ -61,6 +69,8 @@ class Engine {
 
   DeviceInfo device() const;
   protocol::TracerKind tracer() const;
+  /// Whether Renderer::request_jpeg() has an effect.
+  bool encodes_jpeg() const;
   std::uint32_t max_image_size() const;  // pixels, either side
   std::uint64_t validation_messages() const;
   /// Called on a thread of its own whenever files of the shader folder have changed, and at once

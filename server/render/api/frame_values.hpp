@@ -59,11 +59,19 @@ struct CacheUse {
   std::uint64_t bytes = 0;  // allocated, however few cells there are
 };
 
+/// A frame that the device has encoded.
+struct DeviceJpeg {
+  int quality = 0;                  // 1 to 100
+  std::vector<std::uint8_t> bytes;  // a file, with chroma at half the size; empty: there is none
+};
+
 /// One rendered frame, ready for an encoder.
 struct Frame {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
-  std::vector<std::uint8_t> rgba;  // sRGB, alpha 255, row 0 on top, tightly packed
+  std::vector<std::uint8_t> rgba;  // sRGB, alpha 255, row 0 on top, tightly packed; may be absent
+                                   // where there is a JPEG
+  DeviceJpeg jpeg;                 // if Renderer::request_jpeg() asked for it
   std::uint32_t samples = 0;       // accumulated in this frame
   bool converged = false;          // another frame would show the same
   bool new_buffers = false;        // buffers() may differ from those of the frame before

@@ -66,6 +66,19 @@ class Renderer {
   /// Whether the last frame kept them.
   bool has_buffers() const;
 
+  /// Whether the next frame would make its programs and images first, which takes far longer than a
+  /// frame, and prepare() may do that on another thread: on GPUs with the embedded shaders.
+  bool can_prepare() const;
+  /// Makes them, on any thread, beside other renderers, while nothing else of this one is called.
+  void prepare();
+
+  /// The next frames come as a JPEG of this quality, 1 to 100, where the engine encodes and the
+  /// output is shown, and with pixels only where those cost nothing; absent: they come as pixels.
+  void request_jpeg(std::optional<int> quality);
+  /// The pixels of the last frame, which came without; empty where a change since has discarded
+  /// them, or another frame has begun.
+  std::vector<std::uint8_t> read_pixels();
+
   /// False once a static view has all its samples and nothing has changed since.
   bool needs_frame() const;
   /// Renders the next frame; the empty scene is black.

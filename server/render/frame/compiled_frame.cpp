@@ -13,7 +13,7 @@ namespace heliograph::render {
 
 CompiledFrame::CompiledFrame(const Engine::Parts& parts, const FrameInputs& in,
                              const FrameConstantsBuffers& constants_buffers, VkExtent2D extent,
-                             bool keeps_buffers)
+                             bool keeps_buffers, const int& jpeg_quality)
     : inputs(in),
       background(in.moving.environment().background(in.settings.background)),
       pool(parts.device, 3, 24),
@@ -22,7 +22,11 @@ CompiledFrame::CompiledFrame(const Engine::Parts& parts, const FrameInputs& in,
   plan.share_memory();
   share_sets(parts, constants_buffers);
   outputs = declare_frame(plan, inputs);
-  plan.read_back(outputs.output);
+  if (parts.jpeg_tables && can_encode_jpeg(parts.device, extent)) {
+    encoded =
+        encode_jpeg(plan, parts.programs, parts.jpeg_tables, outputs.output, extent, jpeg_quality);
+  }
+  plan.read_back(outputs.output, [&jpeg_quality] { return jpeg_quality == 0; });
   plan.keep(outputs.radiance);
   plan.keep(outputs.mean);
   plan.keep(outputs.mean_weight);

@@ -9,6 +9,7 @@
 #include "render/frame/engine_parts.hpp"
 #include "render/frame/frame.hpp"
 #include "render/frame/frame_constants.hpp"
+#include "render/passes/jpeg/encode_jpeg.hpp"
 #include "render/resources/environment/background.hpp"
 
 namespace heliograph::render {
@@ -16,11 +17,12 @@ namespace heliograph::render {
 /// The plan of a frame with the resources that it keeps alive: one scene at one size, made of the
 /// passes that the settings asked for when it was made.
 struct CompiledFrame {
-  /// References in `inputs`, and `constants_buffers`, outlive this. `keeps_buffers`: whether all
-  /// images can be read after a frame, or just the output and the histories.
+  /// References in `inputs`, and the others, outlive this. `keeps_buffers`: whether all images can
+  /// be read after a frame, or just the output and the histories. `jpeg_quality`: of each frame, 0
+  /// where its pixels come back.
   CompiledFrame(const Engine::Parts& parts, const FrameInputs& inputs,
                 const FrameConstantsBuffers& constants_buffers, VkExtent2D extent,
-                bool keeps_buffers);
+                bool keeps_buffers, const int& jpeg_quality);
 
   /// An image as of the last frame, and how much of it, from the first texel, was drawn.
   struct DrawnImage {
@@ -36,7 +38,9 @@ struct CompiledFrame {
   gpu::DescriptorPool pool;
   gpu::FramePlan plan;
   FrameOutputs outputs;
-  std::vector<BufferInfo> buffers;  // that a view or a capture may name, the output first
+  std::optional<EncodedOutput> encoded;  // absent where the device does not encode
+  bool has_frame = false;                // the output is that of a finished frame
+  std::vector<BufferInfo> buffers;       // that a view or a capture may name, the output first
 
  private:
   void share_sets(const Engine::Parts& parts, const FrameConstantsBuffers& constants_buffers);

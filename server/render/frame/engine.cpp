@@ -1,5 +1,6 @@
 #include "render/frame/engine_parts.hpp"
 #include "render/resources/scene_resources.hpp"
+#include "render/resources/tables/jpeg_tables.hpp"
 #include "shaders/embedded.hpp"
 #include "tracing/tracer_choice.hpp"
 
@@ -48,6 +49,15 @@ std::unique_ptr<gpu::ShaderReload> make_shader_reload(const gpu::Device& device,
   return std::make_unique<gpu::ShaderReload>(device, folder, shaders::all);
 }
 
+/// None where the device does not encode.
+gpu::Buffer jpeg_tables_for(const gpu::Device& device, const EngineOptions& options) {
+  // The errors of shaders that do not compile are drawn over the pixels on the host.
+  const bool reloads = !options.shader_folder.empty();
+  const bool encodes =
+      options.jpeg == JpegEncoding::automatic ? !device.is_cpu() : options.jpeg == JpegEncoding::on;
+  return encodes && !reloads ? make_jpeg_tables(device) : gpu::Buffer();
+}
+
 scene::Scene make_empty_scene() {
   scene::Scene scene;
   scene.name = "empty";
@@ -74,6 +84,7 @@ Engine::Parts::Parts(const EngineOptions& options)
       split_sum_table(make_split_sum_table(device, programs)),
       sheen_table(make_sheen_table(device, programs)),
       ltc_table(make_ltc_image(device)),
+      jpeg_tables(jpeg_tables_for(device, options)),
       around(make_environment_sampler(device, true)),
       clamped(make_environment_sampler(device, false)),
       info{device.report().name, device.report().driver, device_type(device.report().type)},
@@ -100,6 +111,9 @@ DeviceInfo Engine::device() const {
 }
 protocol::TracerKind Engine::tracer() const {
   return current()->tracer->kind();
+}
+bool Engine::encodes_jpeg() const {
+  return static_cast<bool>(current()->jpeg_tables);
 }
 
 void Engine::on_shader_change(std::function<void(const ShaderReport&)> listener) {

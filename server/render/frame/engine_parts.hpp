@@ -26,7 +26,8 @@ struct Engine::Parts {
   gpu::Image split_sum_table;
   gpu::Image sheen_table;
   gpu::Image ltc_table;
-  gpu::Sampler around;  // wraps in u: equirectangular maps
+  gpu::Buffer jpeg_tables;  // none where frames are not encoded
+  gpu::Sampler around;      // wraps in u: equirectangular maps
   gpu::Sampler clamped;
   DeviceInfo info;
   bool host_kernels;

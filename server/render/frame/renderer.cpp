@@ -131,6 +131,23 @@ bool Renderer::has_buffers() const {
   return state_->has_buffers;
 }
 
+void Renderer::request_jpeg(std::optional<int> quality) {
+  state_->requested_jpeg = quality;
+}
+
+std::vector<std::uint8_t> Renderer::read_pixels() {
+  const auto& compiled = state_->compiled;
+  return compiled && compiled->has_frame ? compiled->plan.read() : std::vector<std::uint8_t>();
+}
+
+bool Renderer::can_prepare() const {
+  return !state_->compiled && !state_->parts.device.is_cpu() && !state_->parts.shader_reload;
+}
+
+void Renderer::prepare() {
+  state_->frame_plan();
+}
+
 bool Renderer::needs_frame() const {
   if (state_->keeps_buffers && !state_->has_buffers) return true;
   const auto& reload = state_->parts.shader_reload;
@@ -155,11 +172,13 @@ bool Renderer::begin(const std::function<bool()>& canceled) {
   State& state = *state_;
   state.begun = {.start = std::chrono::steady_clock::now()};
   state.use_newest_shaders();
-  state.begun.new_buffers = !state.compiled;
   CompiledFrame& compiled = state.frame_plan();
+  state.begun.new_buffers = std::exchange(state.new_plan, false);
+  state.jpeg_quality = state.next_jpeg_quality();
+  compiled.has_frame = false;
   state.stale = false;
   state.has_buffers = false;
-  if (!state.begun.new_buffers) compiled.plan.keep_images(state.buffers_needed());
+  compiled.plan.keep_images(state.buffers_needed());
   if (state.pose()) {
     const auto posed = std::chrono::steady_clock::now();
     const std::chrono::duration<float, std::milli> posing = posed - state.begun.start;
@@ -188,6 +207,7 @@ Frame Renderer::finish() {
   State& state = *state_;
   CompiledFrame& compiled = *state.compiled;
   compiled.plan.finish();
+  compiled.has_frame = true;
   state.has_buffers = compiled.plan.keeps_images();
   if (state.clock.samples == 0) {
     state.clock.first_counts = !leaves_samples_out(compiled.inputs);

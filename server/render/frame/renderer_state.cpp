@@ -58,9 +58,10 @@ CompiledFrame& Renderer::State::frame_plan() {
                            parts.sheen_table,
                            parts.ltc_table,
                            extent};
-  compiled =
-      std::make_unique<CompiledFrame>(parts, inputs, constants_buffers, extent, buffers_needed());
+  compiled = std::make_unique<CompiledFrame>(parts, inputs, constants_buffers, extent,
+                                             buffers_needed(), jpeg_quality);
   compiled->plan.set_drawn(drawn());
+  new_plan = true;
   return *compiled;
 }
 
@@ -108,15 +109,24 @@ std::optional<FloatImage> Renderer::State::read(std::string_view name) {
                  {constants, exposure_factor(compiled->plan, compiled->outputs.exposure)});
 }
 
+int Renderer::State::next_jpeg_quality() const {
+  const bool encodes = requested_jpeg && compiled->encoded && shows_output();
+  return encodes ? *requested_jpeg : 0;
+}
+
 Frame Renderer::State::output() {
-  const std::string& shown = settings.view.buffer;
-  if (shown != present_buffers.output.name) {
+  if (!shows_output()) {
+    const std::string& shown = settings.view.buffer;
     if (const auto values = read(shown)) return visualise(shown, *values);
   }
   Frame frame;
   frame.width = extent.width;
   frame.height = extent.height;
-  frame.rgba = compiled->plan.read();
+  if (jpeg_quality > 0) {
+    frame.jpeg = {jpeg_quality, read_jpeg(compiled->plan, *compiled->encoded, jpeg_quality)};
+  }
+  // A frame that is canceled, as on processors, leaves none to read later.
+  if (frame.jpeg.bytes.empty() || parts.device.is_cpu()) frame.rgba = compiled->plan.read();
   return frame;
 }
 

@@ -34,12 +34,13 @@ struct Renderer::State {
   void change_settings(const protocol::Settings& changed);
   void use_newest_shaders();
   Frame output();
+  int next_jpeg_quality() const;
   /// Whether all buffers of the next frame are kept: a view of one of them needs them, too.
   bool buffers_needed() const {
-    const std::string& shown = settings.view.buffer;
     return keeps_buffers ||
-           (shown != present_buffers.output.name && shown != present_buffers.radiance.name);
+           (!shows_output() && settings.view.buffer != present_buffers.radiance.name);
   }
+  bool shows_output() const { return settings.view.buffer == present_buffers.output.name; }
   std::optional<FloatImage> read(std::string_view name);
   bool pose();
   void make_constants(const shared::FrameConstants& before);
@@ -74,8 +75,11 @@ struct Renderer::State {
   protocol::Settings settings;
   VkExtent2D extent{640, 360};  // of the finished frame
   float draw_scale = 1.0f;
+  std::optional<int> requested_jpeg;
+  int jpeg_quality = 0;  // of the frame that has begun; 0: its pixels come back
 
   std::unique_ptr<CompiledFrame> compiled;  // absent until it is needed: see frame_plan()
+  bool new_plan = false;                    // no frame has begun with it
 
   /// Of the frame that has begun.
   struct Begun {

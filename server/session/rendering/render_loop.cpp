@@ -19,13 +19,20 @@ namespace {
 // One frame may wait for each that is being encoded: the renderer stays at most one ahead.
 constexpr std::size_t queued_frames_per_thread = 1;
 constexpr unsigned most_encoding_threads = 8;
+constexpr unsigned most_preparing_threads = 4;
 constexpr std::size_t max_queued_captures = 4;
+constexpr std::size_t max_queued_preparations = 64;
 constexpr std::chrono::milliseconds pause_without_memory{100};
 
 /// On a GPU half of the processors encode; where they draw the frames, one thread is enough.
 std::size_t encoding_threads(const render::DeviceInfo& device) {
   if (device.type == protocol::DeviceType::cpu) return 1;
   return std::clamp(std::thread::hardware_concurrency() / 2, 1u, most_encoding_threads);
+}
+
+/// The driver compiles on each of its own; frames need the other processors.
+std::size_t preparing_threads() {
+  return std::clamp(std::thread::hardware_concurrency() / 4, 1u, most_preparing_threads);
 }
 
 void log_shaders(const render::ShaderReport& report) {
@@ -46,6 +53,7 @@ RenderLoop::RenderLoop(render::Engine& engine, Clock::duration release_after)
       encoder_("encoder", queued_frames_per_thread * encoding_threads(engine.device()),
                encoding_threads(engine.device())),
       capture_writer_("capture writer", max_queued_captures),
+      preparer_("frame preparer", max_queued_preparations, preparing_threads()),
       thread_([this] { run(); }) {
   engine_.on_shader_change([wake = wake_](const render::ShaderReport& report) {
     log_shaders(report);
@@ -60,6 +68,7 @@ void RenderLoop::stop() {
   thread_.join();
   encoder_.stop();
   capture_writer_.stop();
+  preparer_.stop();
   for (const auto& view : views_) view->abandon_captures();
 }
 
@@ -70,6 +79,7 @@ std::shared_ptr<Session> RenderLoop::open(SessionOptions options, PixelShare pix
                                                          .encoder = encoder_,
                                                          .jpeg = jpeg_,
                                                          .capture_writer = capture_writer_,
+                                                         .preparer = preparer_,
                                                          .measurements = measurements_},
                                             std::make_shared<WakeEvent>(wake_));
   std::shared_ptr<Session> session = view->session();

@@ -94,6 +94,7 @@ class RenderLoop {
   stream::JpegEncoder jpeg_;
   Worker encoder_;
   Worker capture_writer_;
+  Worker preparer_;
   std::thread thread_;
 };
 

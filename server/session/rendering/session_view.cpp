@@ -45,10 +45,13 @@ SessionView::SessionView(render::Engine& engine, SessionOptions options, PixelSh
                             .jpeg = services.jpeg,
                             .measurements = services.measurements,
                             .wake = wake_,
-                            .tracer = engine.tracer()}),
+                            .tracer = engine.tracer(),
+                            .read_pixels = [this] { return renderer_->read_pixels(); }}),
       readers_(*session_, services.capture_writer, services.measurements, services.wake) {}
 
-SessionView::~SessionView() = default;
+SessionView::~SessionView() {
+  if (preparing_.valid()) preparing_.wait();
+}
 
 void SessionView::prepare() {
   first_frame_due_ = true;
@@ -90,6 +93,8 @@ void SessionView::publish_buffers() {
 }
 
 void SessionView::release_renderer() {
+  if (preparing_.valid()) preparing_.wait();
+  preparing_ = {};
   if (!renderer_) return;
   begun_.reset();
   renderer_.reset();
@@ -102,7 +107,7 @@ void SessionView::release_renderer() {
 }
 
 SessionView::Work SessionView::advance(bool may_draw) {
-  if (Clock::now() < retry_at_) return Work::none;
+  if (Clock::now() < retry_at_ || is_preparing()) return Work::none;
   wake_->take();
   readers_.collect();
   session_->viewers().announce_due_frames();
@@ -127,6 +132,7 @@ SessionView::Work SessionView::advance(bool may_draw) {
   if (next_view_state(view_inputs()) == ViewState::final) broadcast_.send_final();
   if (broadcast_.pump()) return Work::small;
   if (!frame_due()) return Work::none;
+  if (begin_preparing()) return Work::small;
   if (!may_draw) return Work::held_back;
   begin_next_frame();
   return Work::drawing;
@@ -159,6 +165,7 @@ SessionView::Work SessionView::advance_step(bool may_draw) {
 }
 
 std::optional<Clock::time_point> SessionView::next_due() const {
+  if (preparing_.valid()) return std::nullopt;
   std::optional<Clock::time_point> due = session_->viewers().next_send();
   const auto consider = [&](Clock::time_point time) { due = due ? std::min(*due, time) : time; };
   if (retry_at_ > Clock::now()) consider(retry_at_);
@@ -264,6 +271,28 @@ ReadableFrame SessionView::readable_frame(bool lockstep) {
           .began = frame_began_at_};
 }
 
+/// @throws what went wrong, once it has ended
+bool SessionView::is_preparing() {
+  if (!preparing_.valid()) return false;
+  if (preparing_.wait_for(Clock::duration::zero()) != std::future_status::ready) return true;
+  std::exchange(preparing_, {}).get();
+  return false;
+}
+
+/// Frames of other sessions do not wait for a new session, or one that changes its size or passes.
+bool SessionView::begin_preparing() {
+  if (!renderer_->can_prepare()) return false;
+  const auto task = std::make_shared<std::packaged_task<void()>>(
+      [renderer = renderer_.get()] { renderer->prepare(); });
+  std::future<void> preparing = task->get_future();
+  const bool posted = services_.preparer.post([task, wake = wake_] {
+    (*task)();
+    wake->notify();
+  });
+  if (posted) preparing_ = std::move(preparing);
+  return posted;
+}
+
 void SessionView::begin_next_frame() {
   const std::chrono::duration<float> since = Clock::now() - frame_began_at_;
   newest_stepped_ = false;
@@ -281,6 +310,7 @@ void SessionView::begin_frame(double seconds) {
   // A viewer that moves the camera does not wait for a frame of the view that it leaves.
   const ViewState view_state = next_view_state(view_inputs());
   const Interruption by = interruption(view_inputs());
+  renderer_->request_jpeg(wanted_jpeg(view_state));
   const bool began = renderer_->begin([&] {
     if (by == Interruption::none) return false;
     const bool changed = session_->version() != state_.version;
@@ -292,6 +322,12 @@ void SessionView::begin_frame(double seconds) {
   } else {
     frame_began_at_ = before;
   }
+}
+
+/// What a step shows may be read after the next one has changed the frame.
+std::optional<int> SessionView::wanted_jpeg(ViewState state) {
+  if (!engine_.encodes_jpeg() || session_->timeline().in_lockstep()) return std::nullopt;
+  return session_->viewers().common_jpeg_quality(draw_policy(state).purpose);
 }
 
 void SessionView::finish_frame(Clock::time_point device_free) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <future>
 #include <memory>
 #include <optional>
 
@@ -20,6 +21,7 @@ struct ViewServices {
   Worker& encoder;                // of streamed frames
   stream::JpegEncoder& jpeg;
   Worker& capture_writer;  // of files, which take longer
+  Worker& preparer;        // of what new frames are rendered with
   Measurements& measurements;
 };
 
@@ -88,8 +90,11 @@ class SessionView {
   bool frame_due();
   ReadableFrame readable_frame(bool lockstep);
   Work advance_step(bool may_draw);
+  bool is_preparing();
+  bool begin_preparing();
   void begin_next_frame();
   void begin_frame(double seconds);
+  std::optional<int> wanted_jpeg(ViewState state);
   std::shared_ptr<RenderedFrame> describe(render::Frame frame, Clock::time_point start,
                                           Clock::time_point end);
 
@@ -106,6 +111,7 @@ class SessionView {
   };
   std::optional<BegunFrame> begun_;
   std::unique_ptr<render::Renderer> renderer_;  // null while no frames are needed
+  std::future<void> preparing_;                 // the renderer, which is not touched meanwhile
   Clock::time_point needed_at_;                 // last time that it was needed
   bool first_frame_due_ = false;                // rendered without viewers
 

@@ -1,5 +1,6 @@
 #include "session/viewers/broadcast.hpp"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -57,6 +58,19 @@ protocol::FrameHeader merged(const protocol::FrameHeader& rendered,
   return header;
 }
 
+bool is_device_jpeg(const render::Frame& frame, const stream::VariantRequest& request) {
+  return !frame.jpeg.bytes.empty() &&
+         request.variant == stream::EncodingVariant{.quality = frame.jpeg.quality};
+}
+
+/// Whether the frame comes with all that is sent of it.
+bool suffices(const render::Frame& frame, const EncodingPlan& plan) {
+  return !frame.rgba.empty() ||
+         (plan.stills.empty() && std::ranges::all_of(plan.requests, [&](const auto& request) {
+            return is_device_jpeg(frame, request);
+          }));
+}
+
 }  // namespace
 
 /// One frame that is encoded, on the thread of the encoder.
@@ -68,7 +82,9 @@ struct Broadcast::Encoding {
   std::shared_ptr<const RenderedFrame> rendered;
   FramePurpose purpose;
   std::uint64_t number;
-  std::shared_ptr<const std::vector<std::uint8_t>> depth;
+  EncodingPlan plan;
+  std::shared_ptr<const std::vector<std::uint8_t>> depth{};
+  protocol::PassKind encoded_by = protocol::PassKind::host;
 
   void run() {
     std::vector<stream::SharedFrame> frames;
@@ -85,28 +101,40 @@ struct Broadcast::Encoding {
   void finish(std::vector<stream::SharedFrame> frames) {
     ViewerSet& viewers = session->viewers();
     viewers.publish(number, purpose, std::move(frames));
-    viewers.publish_stats(stats_of(*rendered, services.tracer, phase_of(purpose)));
+    protocol::StatsFrame stats = stats_of(*rendered, services.tracer, phase_of(purpose));
+    stats.encoder = encoded_by;
+    viewers.publish_stats(std::move(stats));
     --*count;
     services.wake->notify();
   }
 
   std::vector<stream::SharedFrame> encode() {
-    const stream::ImageView view = image_view(rendered->frame);
-    const EncodingPlan plan = session->viewers().plan(number, purpose, view.rgba.size() / 4);
+    const render::Frame& frame = rendered->frame;
+    const stream::ImageView view = image_view(frame);
     std::vector<stream::SharedFrame> frames;
     if (rendered->depth) depth = encode_depth(*rendered->depth);
     for (const stream::VariantRequest& request : plan.requests) {
-      frames.push_back(timed([&] { return encoder->encode(view, request); }));
+      if (is_device_jpeg(frame, request)) {
+        encoded_by = protocol::PassKind::device;
+        frames.push_back(timed(encoded_by, [&] {
+          return stream::FrameEncoder::wrap_jpeg(frame.width, frame.height, request.variant,
+                                                 frame.jpeg.bytes);
+        }));
+      } else {
+        frames.push_back(
+            timed(protocol::PassKind::host, [&] { return encoder->encode(view, request); }));
+      }
     }
     for (const protocol::StillFormat format : plan.stills) {
-      frames.push_back(
-          timed([&] { return encoder->encode_still(view, format, plan.still_quality); }));
+      frames.push_back(timed(protocol::PassKind::host, [&] {
+        return encoder->encode_still(view, format, plan.still_quality);
+      }));
     }
     return frames;
   }
 
   template <class Encode>
-  stream::SharedFrame timed(Encode encode) {
+  stream::SharedFrame timed(protocol::PassKind by, Encode encode) {
     const Clock::time_point start = Clock::now();
     const std::shared_ptr<stream::EncodedFrame> frame = encode();
     frame->encoded_at = Clock::now();
@@ -118,7 +146,7 @@ struct Broadcast::Encoding {
     const auto taken = frame->encoded_at - start;
     frame->header.encode_us =
         static_cast<std::uint32_t>(duration_cast<microseconds>(taken).count());
-    services.measurements.encoded(std::chrono::duration<double>(taken).count());
+    services.measurements.encoded(std::chrono::duration<double>(taken).count(), by);
     return frame;
   }
 };
@@ -165,9 +193,30 @@ void Broadcast::send_newest(FramePurpose purpose) {
   ++number_;
 }
 
+/// For what is due: those of the newest frame, which shows the same with as many samples or more.
+bool Broadcast::take_pixels() {
+  if (newest_->frame.rgba.empty()) {
+    std::vector<std::uint8_t> pixels = services_.read_pixels();
+    if (pixels.empty()) return false;
+    auto complete = std::make_shared<RenderedFrame>(*newest_);
+    complete->frame.rgba = std::move(pixels);
+    newest_ = std::move(complete);
+  }
+  due_ = newest_;
+  due_samples_ = due_->header.sample_count;
+  return true;
+}
+
 bool Broadcast::pump() {
   if (!due_ || encoding() || !services_.encoder.has_room()) return false;
   if (!session_->viewers().needs_frame(number_)) return false;
+  const render::Frame& frame = due_->frame;
+  EncodingPlan plan =
+      session_->viewers().plan(number_, due_purpose_, std::uint64_t{frame.width} * frame.height);
+  if (!suffices(frame, plan) && !take_pixels()) {
+    due_.reset();
+    return false;
+  }
   started_ = number_;
   ++*encoding_;
   const bool posted = services_.encoder.post(
@@ -177,7 +226,8 @@ bool Broadcast::pump() {
                            .count = encoding_,
                            .rendered = due_,
                            .purpose = due_purpose_,
-                           .number = number_}]() mutable { encoding.run(); });
+                           .number = number_,
+                           .plan = std::move(plan)}]() mutable { encoding.run(); });
   if (!posted) --*encoding_;
   return posted;
 }

@@ -2,7 +2,9 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <vector>
 
 #include "protocol/messages/messages.hpp"
 #include "session/measurements.hpp"
@@ -20,6 +22,8 @@ struct BroadcastServices {
   Measurements& measurements;
   std::shared_ptr<WakeEvent> wake;  // notified when a frame has been encoded
   protocol::TracerKind tracer;
+  /// Of the newest frame, which came without; empty: they are gone, and another frame comes.
+  std::function<std::vector<std::uint8_t>()> read_pixels;
 };
 
 /// Sends the frames of one session to its viewers. Takes every rendered frame, picks those to send,
@@ -49,6 +53,7 @@ class Broadcast {
 
  private:
   struct Encoding;
+  bool take_pixels();
   bool encoding() const { return *encoding_ != 0; }
   void send_newest(FramePurpose purpose);
 

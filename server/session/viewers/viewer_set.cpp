@@ -208,6 +208,19 @@ bool ViewerSet::needs_frame(std::uint64_t number) const {
   });
 }
 
+std::optional<int> ViewerSet::common_jpeg_quality(FramePurpose purpose) {
+  if (purpose == FramePurpose::final) return std::nullopt;
+  const std::lock_guard lock(mutex_);
+  std::optional<int> quality;
+  for (auto& [id, viewer] : viewers_) {
+    if (!viewer.started || viewer.stream.paused) continue;
+    const stream::EncodingVariant variant = requested_variant(viewer, purpose);
+    if (variant != stream::EncodingVariant{.quality = quality.value_or(variant.quality)}) return {};
+    quality = variant.quality;
+  }
+  return quality;
+}
+
 EncodingPlan ViewerSet::plan(std::uint64_t number, FramePurpose purpose, std::uint64_t pixels) {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();

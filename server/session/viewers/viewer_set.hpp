@@ -114,6 +114,9 @@ class ViewerSet {
   void discard_latest();
   /// Whether a viewer could be sent the frame of this number, and was not yet. Numbers increase.
   bool needs_frame(std::uint64_t number) const;
+  /// The quality of the JPEG of full size that every viewer would be sent of such a frame now;
+  /// absent: some would be sent something else, or there are no viewers.
+  std::optional<int> common_jpeg_quality(FramePurpose purpose);
   /// How to encode the frame of this number, which has so many pixels, for viewers that need it.
   EncodingPlan plan(std::uint64_t number, FramePurpose purpose, std::uint64_t pixels);
   /// Distributes the encodings of the frame that the last plan was for.

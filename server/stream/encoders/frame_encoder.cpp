@@ -15,14 +15,14 @@ namespace {
 constexpr int lossless_quality = 100;
 constexpr std::chrono::seconds max_unused{10};
 
-std::shared_ptr<EncodedFrame> independent_frame(const ImageView& image, FrameCodec codec,
-                                                int quality) {
+std::shared_ptr<EncodedFrame> independent_frame(std::uint32_t width, std::uint32_t height,
+                                                FrameCodec codec, int quality) {
   auto frame = std::make_shared<EncodedFrame>();
   frame->header.codec = codec;
   frame->header.flags = protocol::frame_flag::key;
   frame->header.quality = static_cast<std::uint16_t>(quality);
-  frame->header.width = static_cast<std::uint16_t>(image.width);
-  frame->header.height = static_cast<std::uint16_t>(image.height);
+  frame->header.width = static_cast<std::uint16_t>(width);
+  frame->header.height = static_cast<std::uint16_t>(height);
   return frame;
 }
 
@@ -41,9 +41,16 @@ std::shared_ptr<EncodedFrame> FrameEncoder::encode(const ImageView& image,
 
 std::shared_ptr<EncodedFrame> FrameEncoder::encode_jpeg(const ImageView& image,
                                                         const EncodingVariant& variant) {
-  auto frame = independent_frame(image, FrameCodec::jpeg, variant.quality);
+  return wrap_jpeg(image.width, image.height, variant,
+                   jpeg_.encode(image, variant.quality, ChromaSampling::half));
+}
+
+std::shared_ptr<EncodedFrame> FrameEncoder::wrap_jpeg(std::uint32_t width, std::uint32_t height,
+                                                      const EncodingVariant& variant,
+                                                      std::vector<std::uint8_t> bytes) {
+  auto frame = independent_frame(width, height, FrameCodec::jpeg, variant.quality);
   frame->variant = variant;
-  frame->payload = jpeg_.encode(image, variant.quality, ChromaSampling::half);
+  frame->payload = std::move(bytes);
   return frame;
 }
 
@@ -87,7 +94,8 @@ std::shared_ptr<EncodedFrame> FrameEncoder::encode_still(const ImageView& image,
                                                          int quality) {
   const bool lossless = format == StillFormat::png;
   const int used = lossless ? lossless_quality : std::max(still_quality, quality);
-  auto frame = independent_frame(image, lossless ? FrameCodec::png : FrameCodec::jpeg, used);
+  auto frame = independent_frame(image.width, image.height,
+                                 lossless ? FrameCodec::png : FrameCodec::jpeg, used);
   frame->header.flags |= protocol::frame_flag::final;
   frame->variant.quality = used;
   frame->payload = lossless ? encode_png(image) : jpeg_.encode(image, used, ChromaSampling::full);

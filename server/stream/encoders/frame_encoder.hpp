@@ -25,6 +25,10 @@ class FrameEncoder {
   /// A moving frame. Where the image is too small for a video it becomes the JPEG fallback.
   /// @throws std::runtime_error
   std::shared_ptr<EncodedFrame> encode(const ImageView& image, const VariantRequest& request);
+  /// A moving frame that the device has encoded.
+  static std::shared_ptr<EncodedFrame> wrap_jpeg(std::uint32_t width, std::uint32_t height,
+                                                 const EncodingVariant& variant,
+                                                 std::vector<std::uint8_t> bytes);
   /// The final image of a static view: JPEG without chroma subsampling, of `quality` or better, or
   /// PNG. @throws std::runtime_error
   std::shared_ptr<EncodedFrame> encode_still(const ImageView& image, protocol::StillFormat format,
