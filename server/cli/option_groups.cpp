@@ -76,7 +76,7 @@ void add_jpeg_option(CLI::App& command, DeviceOptions& options) {
   command
       .add_option("--gpu-jpeg", options.gpu_jpeg,
                   "Whether the device encodes the JPEG frames that all viewers of a session "
-                  "share, so that no pixels are copied from it; automatic: on GPUs")
+                  "share, so that no pixels are copied from it; automatic: where it is a GPU")
       ->check(one_of({"automatic", "on", "off"}))
       ->capture_default_str()
       ->group("Device");

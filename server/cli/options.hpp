@@ -21,7 +21,7 @@ struct DeviceOptions {
   std::string device;
   std::string tracer = "auto";
   std::string shader_dir;  // empty: the embedded shaders
-  std::string gpu_jpeg = "automatic";
+  std::string gpu_jpeg = "off";
 };
 
 struct SettingsOptions {
