@@ -172,7 +172,9 @@ TEST(EncodeJpeg, IsAsGoodAndAsSmallAsStreamedFrames) {
     EXPECT_GT(psnr(decode(file, image), image.rgba), psnr(decode(other, image), image.rgba) - 0.1);
     // A marker, part of a byte and three first differences for each interval.
     EXPECT_LT(file.size(), other.size() + 4 * intervals) << quality;
-    if (quality >= 80) EXPECT_LT(20 * file.size(), 21 * other.size()) << quality;
+    if (quality >= 80) {
+      EXPECT_LT(20 * file.size(), 21 * other.size()) << quality;
+    }
   }
 }
 
