@@ -12,7 +12,8 @@ from harness.viewer import Viewer
 
 # What has to be there before; everything else comes in the order of the description.
 FIRST = ["hello", "scene.load", "animation.play", "session.create"]
-LAST = ["reference.stop", "frame.run", "scene.unload", "session.join", "session.close"]
+LAST = ["reference.stop", "frame.run", "scene.unload", "session.detach", "session.join",
+        "session.close"]
 
 KINDS = {"object": dict, "array": list, "string": str, "boolean": bool, "null": type(None)}
 
