@@ -30,12 +30,13 @@ STEP_TIMEOUT = 15  # seconds
 NOT_GENERIC = {"hello", "scene.load", "scene.unload", "scene.cancel", "environment.set",
                "stream.configure", "stream.ack", "frame.step", "frame.run", "frame.capture",
                "reference.start", "settings.patch", "settings.preset", "camera.set",
-               "session.create", "session.join", "session.control", "session.close",
+               "session.create", "session.join", "session.detach", "session.control", "session.close",
                "job.create", "job.cancel", "job.list", "job.status"}
 
 
 def server_arguments():
-    return ("--token", CONTROL, "--view-token", VIEW, "--scene", "mirror", "--max-sessions", "1000", "--max-connections-per-client", "1000")
+    return ("--token", CONTROL, "--view-token", VIEW, "--scene", "mirror", "--max-sessions", "1000",
+            "--max-connections-per-client", "1000")
 
 
 def random_step(rng):
