@@ -131,8 +131,7 @@ std::shared_ptr<const scene::Scene> wall_beside_floor(const shared::Material& fl
 }
 
 // Rays from the wall graze the floor, where its specular lobe would show much of light that came
-// from everywhere; of a light above it is a few hundredths. As seen at the rays' own angle the wall
-// was 1.36 times as bright.
+// from everywhere; of a light above it is a few hundredths.
 TEST(Indirect, SpecularFloorsSendOnWhatTheyGet) {
   RendererRig rig(wall_beside_floor(surface(glm::vec3(0.4f), 0.4f)),
                   scene::constant_environment(glm::vec3(0.0f)), look({0, 1, 5}, {0, 1, 0}, 24.0f),
