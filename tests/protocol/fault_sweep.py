@@ -313,13 +313,22 @@ class Sweep:
     async def renew_viewers(self, what):
         """The worker's own socket may have been lost; the observer's may not."""
         stage = self.stage
-        if stage.observer.socket.closed:
+        if not await is_connected(stage.observer):
             self.wrong.append(f"{what}: the other session's viewer was disconnected\n"
                               f"{tail(stage.server)}")
             stage.observer = None
-        if stage.worker.socket.closed:
+        if not await is_connected(stage.worker):
             stage.worker = None
         await stage.connect()
+
+
+async def is_connected(viewer):
+    """Whether the server answers a ping: the end of a connection reaches the viewer with a delay."""
+    try:
+        await asyncio.wait_for(await viewer.socket.ping(), ANSWER_TIMEOUT)
+    except ConnectionClosed:
+        return False
+    return True
 
 
 def end_fault(server):
