@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
-"""Measures rendering as a service against its bars, and beside headless Chromium with three.js.
+"""Measures rendering as a service against its bars, beside headless Chromium with three.js and beside Blender.
 
     HELIOGRAPH_BINARY=build/bin/heliograph HELIOGRAPH_TEST_ASSETS=models tests/bench/service/bars.py -o bars.json
     ... bars.py --only start dask
-    ... bars.py --smoke      # all but Chromium, as short as possible: the figures mean nothing
+    ... bars.py --smoke      # without the others, as short as possible: the figures mean nothing
 
 Run it on a machine that does nothing else. Chromium renders with three.js where npm can install it, in software as
-heliograph does; what cannot be measured is listed as skipped with its reason. The status is 1 if a bar is missed.
+heliograph does, and Debian's Blender with Cycles; what cannot be measured is listed as skipped with its reason. The
+status is 1 if a bar is missed.
 """
 
 import argparse
@@ -16,7 +17,9 @@ import sys
 import tempfile
 
 import measures
-from chromium import Chromium, Unavailable
+from blender import Blender
+from chromium import Chromium
+from measures import Unavailable
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.normpath(os.path.join(HERE, "..", "..", ".."))
@@ -42,16 +45,20 @@ def at_least(name, value, unit, bar):
     return Row(name, value, unit, f">= {bar:g} {unit}", value >= bar)
 
 
-def beside_chromium(setup, name, ours, measure):
-    """Rows of the same work in Chromium, which ours must be faster than."""
+CHROMIUM = "Chromium with three.js"
+CYCLES = "Blender with Cycles"
+
+
+def beside(setup, name, ours, other, measure, faster=1.0):
+    """Rows of the same work by another program, which ours must be so many times faster than."""
     if setup.smoke:
         return []
     try:
         theirs = measure()
     except Unavailable as reason:
-        return [Row(f"{name}, Chromium with three.js", f"skipped: {reason}", "")]
-    return [Row(f"{name}, Chromium with three.js", theirs, "s"),
-            Row(f"{name}, ratio", theirs / ours, "", "> 1", theirs > ours)]
+        return [Row(f"{name}, {other}", f"skipped: {reason}", "")]
+    return [Row(f"{name}, {other}", theirs, "s"),
+            Row(f"{name}, ratio", theirs / ours, "", f"> {faster:g}", theirs > faster * ours)]
 
 
 def images(setup):
@@ -68,24 +75,28 @@ def images(setup):
     rows.append(at_least("images: least similarity to the converged", similarity, "", 0.97)
                 if similarity is not None else
                 Row("images: similarity", "skipped: python3-skimage is not installed", ""))
-    return rows + beside_chromium(setup, "images: median", set_of_images.median,
-                                  lambda: setup.chromium.median_of_images(models, views, size))
+    for other, program in ((CHROMIUM, setup.chromium), (CYCLES, setup.blender)):
+        rows += beside(setup, "images: median", set_of_images.median, other,
+                       lambda program=program: program.median_of_images(models, views, size))
+    return rows
 
 
 def turntable(setup):
     model = measures.named_model(setup.assets, "DamagedHelmet")
     frames, size = (3, (64, 36)) if setup.smoke else (72, (1280, 720))
-    ours = measures.render_turntable(setup, model, frames, size)
+    quality = 0.97
+    ours = measures.render_turntable(setup, model, frames, size, quality)
     return [Row(f"turntable: {frames} frames, MP4", ours, "s"),
-            *beside_chromium(setup, "turntable", ours, lambda: setup.chromium.turntable(model, frames, size))]
+            *beside(setup, "turntable", ours, CYCLES,
+                    lambda: setup.blender.turntable(model, frames, size, quality), faster=5.0)]
 
 
 def start(setup):
     model = measures.named_model(setup.assets, "Duck")
     ours = measures.start_to_image(setup, model, 1 if setup.smoke else 5)
     return [at_most("start to the first image: median", ours, "s", 0.8),
-            *beside_chromium(setup, "start to the first image", ours,
-                             lambda: setup.chromium.screenshot(model, 1 if setup.smoke else 5))]
+            *beside(setup, "start to the first image", ours, CHROMIUM,
+                    lambda: setup.chromium.screenshot(model, 5))]
 
 
 def dask(setup):
@@ -116,7 +127,7 @@ MEASUREMENTS = {measure.__name__: measure for measure in (start, interactive, da
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--only", nargs="+", choices=MEASUREMENTS, default=list(MEASUREMENTS))
-    parser.add_argument("--smoke", action="store_true", help="all but Chromium, as short as possible")
+    parser.add_argument("--smoke", action="store_true", help="without the others, as short as possible")
     parser.add_argument("-o", "--output", help="JSON file of all rows")
     options = parser.parse_args()
     if not os.environ.get("HELIOGRAPH_TEST_ASSETS"):
@@ -125,7 +136,8 @@ def main():
     rows = []
     with tempfile.TemporaryDirectory() as folder, Chromium(folder, HERE) as chromium:
         setup = measures.Setup(binary=os.environ["HELIOGRAPH_BINARY"], root=ROOT, folder=folder, smoke=options.smoke,
-                               assets=os.environ["HELIOGRAPH_TEST_ASSETS"], chromium=chromium)
+                               assets=os.environ["HELIOGRAPH_TEST_ASSETS"], chromium=chromium,
+                               blender=Blender(folder, HERE))
         for name in options.only:
             for row in MEASUREMENTS[name](setup):
                 rows.append(row)

@@ -8,9 +8,7 @@ import shutil
 import subprocess
 import threading
 
-
-class Unavailable(Exception):
-    """Why Chromium cannot be measured here."""
+from measures import Unavailable
 
 
 class Handler(http.server.SimpleHTTPRequestHandler):
@@ -79,11 +77,6 @@ class Chromium:
     def median_of_images(self, models, views, size):
         seconds = sorted(self.run({"models": models, "views": views, "size": [size, size]}))
         return seconds[len(seconds) // 2]
-
-    def turntable(self, model, frames, size):
-        """Without the encoding of the video."""
-        views = [[360 * frame / frames, 17] for frame in range(frames)]
-        return sum(self.run({"models": [model], "views": views, "size": list(size)}))
 
     def screenshot(self, model, times):
         """From the start of the browser to its first image: median."""

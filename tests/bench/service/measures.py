@@ -16,6 +16,10 @@ from dataclasses import dataclass, field
 MIB = 1024
 
 
+class Unavailable(Exception):
+    """Why something cannot be measured here."""
+
+
 @dataclass
 class Setup:
     binary: str
@@ -24,6 +28,7 @@ class Setup:
     smoke: bool
     assets: str
     chromium: object
+    blender: object
 
     def new_folder(self, name):
         path = os.path.join(self.folder, name)
@@ -109,13 +114,18 @@ def render_images(setup, models, views, size, quality):
     return found
 
 
+def similarity(path, truth):
+    """SSIM of two image files, without alpha, by scikit-image."""
+    from skimage.io import imread  # pylint: disable=import-outside-toplevel
+    from skimage.metrics import structural_similarity  # pylint: disable=import-outside-toplevel
+
+    return structural_similarity(imread(path)[..., :3], imread(truth)[..., :3], channel_axis=-1)
+
+
 def similarity_to_truth(setup, images, most):
     """The least SSIM of some images to converged ones; None without scikit-image."""
     if not importlib.util.find_spec("skimage"):
         return None
-    from skimage.io import imread  # pylint: disable=import-outside-toplevel
-    from skimage.metrics import structural_similarity  # pylint: disable=import-outside-toplevel
-
     made = [entry for entry in images.entries if os.path.exists(os.path.join(images.folder, entry["output"]))]
     chosen = made[::max(1, len(made) // most)][:most]
     samples = 16 if setup.smoke else 2048
@@ -125,16 +135,15 @@ def similarity_to_truth(setup, images, most):
         entries.append({**entry, "samples": samples, "settings": {"accumulation": {"max_samples": samples}}})
         del entries[-1]["quality"]
     run_measured([setup.binary, "render", "--manifest", write_manifest(truth, entries), "--progress", "json"], cwd=truth)
-    return min(structural_similarity(imread(os.path.join(images.folder, entry["output"]))[..., :3],
-                                     imread(os.path.join(truth, entry["output"]))[..., :3], channel_axis=-1)
+    return min(similarity(os.path.join(images.folder, entry["output"]), os.path.join(truth, entry["output"]))
                for entry in chosen)
 
 
-def render_turntable(setup, model, frames, size):
+def render_turntable(setup, model, frames, size, quality):
     folder = setup.new_folder("turntable")
     seconds, status, _, _ = run_measured(
         [setup.binary, "render", model, "-o", "turn.mp4", "--turntable", str(frames), "--width", str(size[0]),
-         "--height", str(size[1]), "--quality", "0.97"], cwd=folder)
+         "--height", str(size[1]), "--quality", str(quality)], cwd=folder)
     if status:
         raise RuntimeError(f"the turntable ended with {status}")
     return seconds
