@@ -355,7 +355,10 @@ class ViewerConnection : public Connection,
     text_in_flight_ = {};
     outgoing_.hold(pending_bytes_);
     frame_in_flight_.reset();
-    if (!error) write_next();
+    if (!error) return write_next();
+    // Nothing more can be sent, but a peer that waits for an answer sends nothing that would fail
+    // the read. What was canceled ends with the operation that knows why.
+    if (error != asio::error::operation_aborted) ended(error);
   }
 
   void close(std::uint16_t code, const std::string& reason) {

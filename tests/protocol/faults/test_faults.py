@@ -9,6 +9,7 @@ import unittest
 
 import fault_sweep
 from harness.faults import ALL_CALLS, OUT_OF_DEVICE_MEMORY, FaultTable, FaultyServer, rule
+from harness.viewer import Viewer
 
 
 def start(*rules):
@@ -87,6 +88,23 @@ class Requests(unittest.TestCase):
 
     def state(self, server, job):
         return server.call("job.status", {"job": job})["state"]
+
+
+class Connections(unittest.TestCase):
+    def test_a_viewer_whose_answer_cannot_be_sent_is_disconnected(self):
+        asyncio.run(self.lose_an_answer())
+
+    async def lose_an_answer(self):
+        with FaultyServer() as server:
+            async with Viewer(server) as viewer:
+                await viewer.rest()
+                await viewer.call("stream.pause")
+                server.faults.arm("sendmsg", 1, errno.EPIPE)
+                asking = asyncio.create_task(viewer.ask("camera.get"))
+                await viewer.closed(5)
+                self.assertEqual(server.faults.disarm("sendmsg")[1], 1)
+                with self.assertRaises(asyncio.CancelledError):
+                    await asking
 
 
 class Clock(unittest.TestCase):
