@@ -27,6 +27,10 @@ def _given(params):
 class _Group:
     def __init__(self, call):
         self._call = call
+
+    def __repr__(self):
+        methods = ", ".join(name for name in vars(type(self)) if not name.startswith("_"))
+        return f"<{type(self).__name__.lower()}: {methods}>"
 '''
 
 SIMPLE = {"boolean": "bool", "integer": "int", "number": "float", "string": "str",

@@ -9,6 +9,13 @@ from .images import Capture
 from .widget import create_widget
 
 
+def _description(client, connection):
+    if connection.ended:
+        return f"<heliograph.{type(client).__name__} of {connection.url}, closed>"
+    return (f"<heliograph.{type(client).__name__} of {connection.url}, session "
+            f"{client.info['session']}, {client.info['device']['name']}>")
+
+
 class AsyncClient(Methods):
     """A viewer in a session. Every method of the protocol is one of its own or of its groups:
     `await client.camera.orbit(yaw=15)`. Frames are streamed only while `next_frame` is called; a
@@ -18,6 +25,9 @@ class AsyncClient(Methods):
         super().__init__(self._call)
         self._connection = connection
         self.info = None  # the result of hello
+
+    def __repr__(self):
+        return _description(self, self._connection)
 
     async def _call(self, method, params):
         return await self._connection.call(method, params)
@@ -101,6 +111,9 @@ class Client(Methods):
         except BaseException:
             self._end_thread()
             raise
+
+    def __repr__(self):
+        return _description(self, self._client._connection)
 
     @property
     def info(self):

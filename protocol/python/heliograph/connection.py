@@ -42,12 +42,13 @@ def offered_subprotocols(token):
 class Connection:
     """Lives as long as its socket: exceptions of listeners are logged."""
 
-    def __init__(self, socket):
+    def __init__(self, socket, url):
+        self.url = url
         self._socket = socket
         self._answers = {}
         self._next_id = 0
         self._listeners = collections.defaultdict(list)
-        self._ended = None
+        self.ended = None  # why, once the connection has ended
         self.frames = FrameStream(self)
         self._reader = asyncio.ensure_future(self._read())
 
@@ -64,7 +65,7 @@ class Connection:
             reason = getattr(error, "strerror", None) or str(error) or "it took too long"
             raise ConnectionError(
                 f"no server answers at {url}: {reason}; heliograph serve starts one") from error
-        return cls(socket)
+        return cls(socket, url)
 
     async def close(self):
         await self._socket.close()
@@ -72,8 +73,8 @@ class Connection:
 
     def check(self):
         """Raises ConnectionError if the connection has ended."""
-        if self._ended:
-            raise ConnectionError(self._ended)
+        if self.ended:
+            raise ConnectionError(self.ended)
 
     async def call(self, method, params, timeout=CALL_TIMEOUT):
         """Returns the result. Raises HeliographError if the server refuses, ConnectionError if the
@@ -116,7 +117,7 @@ class Connection:
         except websockets.ConnectionClosed as closed:
             ended = str(closed)
         finally:
-            self._ended = ended
+            self.ended = ended
             self._fail_all(lambda: ConnectionError(ended))
             self.frames.end()
 

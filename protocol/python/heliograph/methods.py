@@ -13,6 +13,10 @@ class _Group:
     def __init__(self, call):
         self._call = call
 
+    def __repr__(self):
+        methods = ", ".join(name for name in vars(type(self)) if not name.startswith("_"))
+        return f"<{type(self).__name__.lower()}: {methods}>"
+
 
 class Animation(_Group):
     def list(self) -> Dict[str, Any]:

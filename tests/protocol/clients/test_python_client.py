@@ -101,6 +101,13 @@ class Library(ServerTestCase):
             self.assertEqual((error.code, error.path), (-32602, "vertical_fov"))
             self.assertIn("170", error.limit)
 
+    def test_objects_say_what_they_are(self):
+        with self.connect() as view:
+            for part in ("heliograph.Client", self.server.url, "session main", "llvmpipe"):
+                self.assertIn(part, repr(view))
+            self.assertRegex(repr(view.camera), "^<camera: .*orbit")
+        self.assertIn("closed", repr(view))
+
     def test_captures_in_every_format(self):
         with self.connect() as view:
             image = view.capture(samples=1)
