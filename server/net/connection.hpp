@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <set>
+#include <thread>
 #include <utility>
 
 #include "net/client_stream.hpp"
@@ -88,6 +89,7 @@ struct ServerContext {
   // Of responses that are not made yet, beside those.
   const std::shared_ptr<protocol::AnswerMemory> answer_memory =
       std::make_shared<protocol::AnswerMemory>(max_outgoing_bytes);
+  const std::thread::id thread = std::this_thread::get_id();
   bool draining = false;  // no new viewers are accepted
   bool ending = false;    // all connections are being closed
 
@@ -101,6 +103,19 @@ struct ServerContext {
     if (ending && connections.empty()) on_last_closed();
   }
 };
+
+/// A connection that ends on the network thread, whichever thread releases it last, such as the one
+/// that made its answer: its end changes what all connections share.
+template <class Made, class... Arguments>
+std::shared_ptr<Made> make_connection(ServerContext& context, ClientStream stream,
+                                      Arguments&&... arguments) {
+  const auto end = [thread = context.thread,
+                    executor = stream.get_executor()](Connection* connection) {
+    std::shared_ptr<Connection> own(connection);
+    if (std::this_thread::get_id() != thread) run_later(executor, [own = std::move(own)] {});
+  };
+  return {new Made(context, std::move(stream), std::forward<Arguments>(arguments)...), end};
+}
 
 /// Reads requests from a new connection and responds to them, or upgrades it to a viewer's.
 void start_http_connection(ServerContext& context, ClientStream stream, ListenerKind kind);

@@ -477,7 +477,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
 }  // namespace
 
 void start_http_connection(ServerContext& context, ClientStream stream, ListenerKind kind) {
-  std::make_shared<HttpConnection>(context, std::move(stream), kind)->start();
+  make_connection<HttpConnection>(context, std::move(stream), kind)->start();
 }
 
 }  // namespace heliograph::net

@@ -241,7 +241,7 @@ protocol::Result<protocol::StreamConfigure> mjpeg_stream_options(const HttpReque
 
 void start_mjpeg_stream(ServerContext& context, ClientStream stream, const HttpRequest& request,
                         const std::string& session, const protocol::StreamConfigure& options) {
-  std::make_shared<MjpegStream>(context, std::move(stream))->start(request, session, options);
+  make_connection<MjpegStream>(context, std::move(stream))->start(request, session, options);
 }
 
 }  // namespace heliograph::net

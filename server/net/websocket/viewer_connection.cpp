@@ -432,7 +432,7 @@ class ViewerConnection : public Connection,
 
 void start_viewer_connection(ServerContext& context, ClientStream stream,
                              const HttpRequest& request, Role role) {
-  std::make_shared<ViewerConnection>(context, std::move(stream), session_of(request), role)
+  make_connection<ViewerConnection>(context, std::move(stream), session_of(request), role)
       ->accept(request);
 }
 
