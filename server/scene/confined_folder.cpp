@@ -30,6 +30,7 @@ std::vector<std::uint8_t> ConfinedFolder::read(const std::string& relative) {
   const std::filesystem::path requested(relative);
   if (requested.is_absolute() || !is_inside((root_ / requested).lexically_normal(), root_))
     outside();
+  if (root_.empty()) throw MissingFile(label + " is missing");
   std::error_code error;
   const std::filesystem::path resolved = std::filesystem::canonical(root_ / requested, error);
   if (error) throw MissingFile(label + " is missing");
@@ -42,10 +43,7 @@ std::vector<std::uint8_t> ConfinedFolder::read(const std::string& relative) {
 
 std::vector<std::uint8_t> read_regular_file(const std::filesystem::path& path,
                                             std::uint64_t max_bytes, const std::string& label) {
-  const RegularFile file(path, max_bytes, label);
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(file.size()));
-  file.read(0, bytes);
-  return bytes;
+  return read_all(RegularFile(path, max_bytes, label));
 }
 
 }  // namespace heliograph::scene

@@ -14,6 +14,8 @@ namespace heliograph::scene {
 class ConfinedFolder {
  public:
   ConfinedFolder(const std::filesystem::path& folder, std::uint64_t byte_budget);
+  /// No folder: every file is missing.
+  ConfinedFolder() = default;
 
   /// Reads `relative` (already percent-decoded, '/' separated).
   /// @throws ImportError naming `relative` when it leaves the folder, is missing or exceeds the
@@ -25,7 +27,7 @@ class ConfinedFolder {
 
  private:
   std::filesystem::path root_;
-  std::uint64_t budget_;
+  std::uint64_t budget_ = 0;
   std::vector<SourceFile> files_;
 };
 

@@ -24,14 +24,17 @@ glm::vec3 physical(const glm::vec3& radiance) {
 
 }  // namespace
 
+Environment decode_environment(std::span<const std::uint8_t> file) {
+  Environment environment = is_exr(file) ? decode_exr(file) : decode_radiance(file);
+  for (glm::vec3& radiance : environment.radiance) radiance = physical(radiance);
+  return environment;
+}
+
 Environment load_environment(const std::filesystem::path& path) {
-  constexpr std::uint64_t max_bytes = 512ull << 20;
   const std::string what = "the environment " + path.filename().string();
-  const std::vector<std::uint8_t> file = read_regular_file(path, max_bytes, what);
+  const std::vector<std::uint8_t> file = read_regular_file(path, most_environment_bytes, what);
   try {
-    Environment environment = is_exr(file) ? decode_exr(file) : decode_radiance(file);
-    for (glm::vec3& radiance : environment.radiance) radiance = physical(radiance);
-    return environment;
+    return decode_environment(file);
   } catch (const ImportError& error) {
     throw ImportError(what + " " + error.what());
   }

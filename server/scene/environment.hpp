@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
 
 namespace heliograph::scene {
@@ -15,10 +16,16 @@ struct Environment {
   std::vector<glm::vec3> radiance;
 };
 
+/// Of a file.
+inline constexpr std::uint64_t most_environment_bytes = 512ull << 20;
+
 /// Reads a Radiance .hdr or an OpenEXR file of at most 8192 x 4096 pixels. Radiance is from 0 to
 /// 1e6.
 /// @throws ImportError
 Environment load_environment(const std::filesystem::path& path);
+
+/// The same of the bytes of such a file. @throws ImportError
+Environment decode_environment(std::span<const std::uint8_t> file);
 
 /// Constant radiance from every direction (a furnace).
 Environment constant_environment(const glm::vec3& radiance);

@@ -11,6 +11,7 @@
 #include <optional>
 #include <set>
 #include <thread>
+#include <utility>
 
 #include "scene/animation/deform.hpp"
 #include "scene/byte_budget.hpp"
@@ -95,13 +96,15 @@ class PartsDone {
 
 class Importer {
  public:
-  Importer(const std::filesystem::path& path, const ImportLimits& limits,
+  /// `source`: a path, or an open file.
+  template <class Source>
+  Importer(Source source, std::string name, const ImportLimits& limits,
            const ImportProgress& progress, const SceneChoice& choice)
       : limits_(limits), progress_(progress), choice_(choice), budget_(limits.scene_bytes) {
     const Stopwatch watch;
     report("reading", 0.0f);
-    file_.emplace(path, limits, warnings_);
-    scene_.name = path.stem().string();
+    file_.emplace(std::move(source), limits, warnings_);
+    scene_.name = std::move(name);
     times_.parse = watch.seconds();
   }
 
@@ -366,13 +369,21 @@ Scene import_gltf(const std::filesystem::path& path, const ImportLimits& limits,
                   const ImportProgress& progress, ImportTimes* times, const SceneChoice& choice) {
   try {
     const Stopwatch watch;
-    Importer importer(path, limits, progress, choice);
+    Importer importer(path, path.stem().string(), limits, progress, choice);
     Scene scene = importer.import();
     if (times) {
       *times = importer.times();
       times->total = watch.seconds();
     }
     return scene;
+  } catch (const std::bad_alloc&) {
+    throw ImportError("not enough memory for the scene");
+  }
+}
+
+Scene import_lone_gltf(RegularFile file, const ImportLimits& limits) {
+  try {
+    return Importer(std::move(file), {}, limits, {}, {}).import();
   } catch (const std::bad_alloc&) {
     throw ImportError("not enough memory for the scene");
   }

@@ -6,6 +6,7 @@
 
 #include "scene/import_error.hpp"
 #include "scene/import_limits.hpp"
+#include "scene/regular_file.hpp"
 #include "scene/scene.hpp"
 
 namespace heliograph::scene {
@@ -29,5 +30,9 @@ using ImportProgress = std::function<void(std::string_view stage, float fraction
 Scene import_gltf(const std::filesystem::path& path, const ImportLimits& limits = {},
                   const ImportProgress& progress = {}, ImportTimes* times = nullptr,
                   const SceneChoice& choice = {});
+
+/// Reads a .glb or .gltf file that is alone: others that it refers to are missing. Opens none.
+/// @throws ImportError
+Scene import_lone_gltf(RegularFile file, const ImportLimits& limits = {});
 
 }  // namespace heliograph::scene

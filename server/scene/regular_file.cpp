@@ -11,14 +11,23 @@
 
 namespace heliograph::scene {
 
+namespace {
+
 // Non-blocking: opening a pipe must not wait for its writer before its type is checked.
+int open_to_read(const std::filesystem::path& path, const std::string& label) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor >= 0) return descriptor;
+  throw ImportError(label + (errno == ENOENT ? " does not exist" : " cannot be opened"));
+}
+
+}  // namespace
+
 RegularFile::RegularFile(const std::filesystem::path& path, std::uint64_t max_bytes,
                          std::string label)
-    : label_(std::move(label)),
-      descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
-  if (descriptor_ < 0) {
-    throw ImportError(label_ + (errno == ENOENT ? " does not exist" : " cannot be opened"));
-  }
+    : RegularFile(open_to_read(path, label), max_bytes, label) {}
+
+RegularFile::RegularFile(int descriptor, std::uint64_t max_bytes, std::string label)
+    : label_(std::move(label)), descriptor_(descriptor) {
   const auto fail = [&](const char* reason) {
     ::close(descriptor_);
     throw ImportError(label_ + reason);
@@ -31,8 +40,13 @@ RegularFile::RegularFile(const std::filesystem::path& path, std::uint64_t max_by
   if (size_ > max_bytes) fail(" exceeds the limit on the size of a scene's files");
 }
 
+RegularFile::RegularFile(RegularFile&& other) noexcept
+    : label_(std::move(other.label_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      size_(other.size_) {}
+
 RegularFile::~RegularFile() {
-  ::close(descriptor_);
+  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 void RegularFile::read(std::uint64_t offset, std::span<std::uint8_t> bytes) const {
@@ -44,6 +58,12 @@ void RegularFile::read(std::uint64_t offset, std::span<std::uint8_t> bytes) cons
     bytes = bytes.subspan(static_cast<std::size_t>(count));
     offset += static_cast<std::uint64_t>(count);
   }
+}
+
+std::vector<std::uint8_t> read_all(const RegularFile& file) {
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(file.size()));
+  file.read(0, bytes);
+  return bytes;
 }
 
 }  // namespace heliograph::scene

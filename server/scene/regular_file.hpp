@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace heliograph::scene {
 
@@ -12,7 +13,10 @@ class RegularFile {
  public:
   /// `label` stands for the file in errors. @throws ImportError
   RegularFile(const std::filesystem::path& path, std::uint64_t max_bytes, std::string label);
+  /// The same of a file that is open already; takes the descriptor over.
+  RegularFile(int descriptor, std::uint64_t max_bytes, std::string label);
   ~RegularFile();
+  RegularFile(RegularFile&& other) noexcept;
   RegularFile(const RegularFile&) = delete;
   RegularFile& operator=(const RegularFile&) = delete;
 
@@ -25,5 +29,8 @@ class RegularFile {
   int descriptor_ = -1;
   std::uint64_t size_ = 0;
 };
+
+/// All bytes of it. @throws ImportError
+std::vector<std::uint8_t> read_all(const RegularFile& file);
 
 }  // namespace heliograph::scene

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <utility>
 
 #include "scene/import_error.hpp"
 
@@ -15,8 +16,7 @@ constexpr std::uint32_t glb_binary_chunk = 0x004e4942;  // "BIN"
 
 }  // namespace
 
-Container::Container(const std::filesystem::path& path, std::uint64_t max_bytes)
-    : file_(path, max_bytes, "the file") {
+Container::Container(RegularFile file) : file_(std::move(file)) {
   if (file_.size() == 0) throw ImportError("the file is empty");
   if (file_.size() >= 4 && read_word(0) == glb_magic) {
     read_chunks();

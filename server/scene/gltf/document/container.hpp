@@ -14,7 +14,7 @@ namespace heliograph::scene {
 class Container {
  public:
   /// @throws ImportError
-  Container(const std::filesystem::path& path, std::uint64_t max_bytes);
+  explicit Container(RegularFile file);
 
   /// The document's text, once.
   std::string take_text() { return std::move(text_); }

@@ -1,6 +1,7 @@
 #include "scene/gltf/document/gltf_file.hpp"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "scene/gltf/document/extension_value.hpp"
 #include "scene/gltf/document/model_parser.hpp"
@@ -13,9 +14,17 @@ namespace heliograph::scene {
 
 GltfFile::GltfFile(const std::filesystem::path& path, const ImportLimits& limits,
                    Warnings& warnings)
-    : self_(examine_file(path)),
-      folder_(path.parent_path(), limits.file_bytes),
-      container_(path, limits.file_bytes),
+    : GltfFile(examine_file(path), ConfinedFolder(path.parent_path(), limits.file_bytes),
+               RegularFile(path, limits.file_bytes, "the file"), limits, warnings) {}
+
+GltfFile::GltfFile(RegularFile file, const ImportLimits& limits, Warnings& warnings)
+    : GltfFile({}, {}, std::move(file), limits, warnings) {}
+
+GltfFile::GltfFile(SourceFile self, ConfinedFolder folder, RegularFile file,
+                   const ImportLimits& limits, Warnings& warnings)
+    : self_(std::move(self)),
+      folder_(std::move(folder)),
+      container_(std::move(file)),
       document_(read_document(limits, warnings)),
       model_(parse_model(document_, [this](std::size_t index) { return read_buffer(index); })) {
   document_.text = {};

@@ -29,6 +29,8 @@ class GltfFile {
  public:
   /// @throws ImportError
   GltfFile(const std::filesystem::path& path, const ImportLimits& limits, Warnings& warnings);
+  /// A file that is alone: others that it refers to are missing. @throws ImportError
+  GltfFile(RegularFile file, const ImportLimits& limits, Warnings& warnings);
   GltfFile(const GltfFile&) = delete;
   GltfFile& operator=(const GltfFile&) = delete;
 
@@ -42,6 +44,8 @@ class GltfFile {
   std::vector<SourceFile> sources() const;
 
  private:
+  GltfFile(SourceFile self, ConfinedFolder folder, RegularFile file, const ImportLimits& limits,
+           Warnings& warnings);
   CheckedDocument read_document(const ImportLimits& limits, Warnings& warnings);
   std::vector<std::uint8_t> read_buffer(std::size_t index);
   void read_views(const ImportLimits& limits);
