@@ -17,6 +17,7 @@ std::vector<std::string> tracer_names() {
   return names;
 }
 
+constexpr const char* import_command = "import-for-server";
 constexpr const char* strict_assets = "--strict-assets";
 
 /// The options of limits that are numbers: name, value and help.
@@ -130,6 +131,22 @@ std::vector<std::string> limit_arguments(const scene::ImportLimits& limits) {
   });
   if (limits.strict_assets) arguments.emplace_back(strict_assets);
   return arguments;
+}
+
+std::vector<std::string> import_arguments(const scene::ImportLimits& limits,
+                                          std::uint32_t seconds) {
+  std::vector<std::string> arguments{import_command, "--seconds", std::to_string(seconds)};
+  const std::vector<std::string> more = limit_arguments(limits);
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+CLI::App* add_import(CLI::App& app, ImportOptions& options) {
+  CLI::App* command = app.add_subcommand(import_command, "Import files for a server");
+  command->group("");
+  command->add_option("--seconds", options.seconds, "Of one import")->required();
+  add_limit_options(*command, options.limits);
+  return command;
 }
 
 }  // namespace heliograph::cli

@@ -28,6 +28,9 @@ void add_limit_options(CLI::App& command, scene::ImportLimits& limits);
 /// The options that give another program of ours these limits.
 std::vector<std::string> limit_arguments(const scene::ImportLimits& limits);
 
+/// Those that make it the helper of a server that imports uploads.
+std::vector<std::string> import_arguments(const scene::ImportLimits& limits, std::uint32_t seconds);
+
 /// `Number` is an integer or an optional one; `otherwise` describes the default.
 template <class Number>
 void add_size_options(CLI::App& command, Number& width, Number& height,
@@ -44,6 +47,8 @@ void add_size_options(CLI::App& command, Number& width, Number& height,
 CLI::App* add_serve(CLI::App& app, ServeOptions& options);
 /// Adds the command "render".
 CLI::App* add_render(CLI::App& app, RenderOptions& options);
+/// Adds the command of the helper that import_arguments() start, which no help shows.
+CLI::App* add_import(CLI::App& app, ImportOptions& options);
 /// Adds the command "compare".
 CLI::App* add_compare(CLI::App& app, CompareOptions& options);
 

@@ -88,7 +88,9 @@ std::vector<std::string> option_names(const CLI::App& app, const CLI::App* comma
 
 std::vector<std::string> command_names(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands({})) names.push_back(command->get_name());
+  for (const CLI::App* command : app.get_subcommands({})) {
+    if (!command->get_group().empty()) names.push_back(command->get_name());
+  }
   return names;
 }
 
@@ -206,12 +208,14 @@ Command parse(const std::vector<std::string>& given) {
   DevicesOptions devices;
   SchemaOptions schema;
   HealthOptions health;
+  ImportOptions import;
   const CLI::App* serve_command = add_serve(app, serve);
   const CLI::App* render_command = add_render(app, render);
   const CLI::App* compare_command = add_compare(app, compare);
   const CLI::App* devices_command = add_devices(app, devices);
   const CLI::App* schema_command = add_schema(app, schema);
   const CLI::App* health_command = add_health(app, health);
+  const CLI::App* import_command = add_import(app, import);
   for (CLI::App* command : app.get_subcommands({})) name_variables(*command);
 
   CLI::App* const command = named_command(app, given);
@@ -239,6 +243,7 @@ Command parse(const std::vector<std::string>& given) {
   if (*compare_command) return compare;
   if (*devices_command) return devices;
   if (*schema_command) return schema;
+  if (*import_command) return import;
   if (*health_command) {
     return health.url.empty() ? with_url_of_server(health, config_file) : Command(health);
   }

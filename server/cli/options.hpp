@@ -37,7 +37,8 @@ struct ServeOptions {
   std::string uploads;  // folder; empty: uploads are not allowed
   std::uint64_t max_upload_bytes = 256ull << 20;
   std::uint64_t upload_quota = 4ull << 30;
-  std::string jobs;  // folder; empty: there are no jobs
+  std::uint32_t import_seconds = 120;  // of an uploaded file
+  std::string jobs;                    // folder; empty: there are no jobs
   std::uint64_t job_quota = 4ull << 30;
   std::uint64_t max_waiting_jobs = 10000;
   std::uint32_t keep_jobs = 7 * 86400;  // seconds
@@ -117,6 +118,12 @@ struct HealthOptions {
   std::string authorities;  // file; empty: the system's
 };
 
+/// Of the helper of a server that imports uploads.
+struct ImportOptions {
+  scene::ImportLimits limits;
+  std::uint32_t seconds = 0;  // of one import
+};
+
 /// The result of a command line that needs no command: help was printed, or the arguments are
 /// wrong.
 struct Finished {
@@ -124,7 +131,7 @@ struct Finished {
 };
 
 using Command = std::variant<Finished, ServeOptions, RenderOptions, CompareOptions, DevicesOptions,
-                             SchemaOptions, HealthOptions>;
+                             SchemaOptions, HealthOptions, ImportOptions>;
 
 /// Reads the command line, HELIOGRAPH_* variables and the file of --config, in this order of
 /// precedence. Help is printed to stdout, errors to stderr with the nearest known name.

@@ -118,11 +118,11 @@ net::ServerOptions server_options(const ServeOptions& options) {
 
 std::unique_ptr<session::UploadStore> upload_store(const ServeOptions& options) {
   if (options.uploads.empty()) return nullptr;
-  return std::make_unique<session::UploadStore>(
-      session::UploadOptions{.folder = options.uploads,
-                             .max_bytes = options.max_upload_bytes,
-                             .quota = options.upload_quota,
-                             .import_limits = options.limits});
+  return std::make_unique<session::UploadStore>(session::UploadOptions{
+      .folder = options.uploads,
+      .max_bytes = options.max_upload_bytes,
+      .quota = options.upload_quota,
+      .import_arguments = import_arguments(options.limits, options.import_seconds)});
 }
 
 std::string how_to_bring_a_scene(const std::vector<std::filesystem::path>& roots, bool uploads) {

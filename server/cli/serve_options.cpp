@@ -173,6 +173,12 @@ void add_scene_options(CLI::App& command, ServeOptions& options) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str()
       ->group(group);
+  command
+      .add_option("--max-import-seconds", options.import_seconds,
+                  "Seconds after which the import of an uploaded file is given up")
+      ->check(CLI::Range(1, 3600))
+      ->capture_default_str()
+      ->group(group);
   command.add_option("--upload-quota", options.upload_quota, "Maximum bytes of all uploaded files")
       ->check(CLI::PositiveNumber)
       ->capture_default_str()

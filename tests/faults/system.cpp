@@ -1,11 +1,13 @@
 // Sockets, processes, threads and clocks that fail.
 #include <pthread.h>
 #include <sys/epoll.h>
+#include <sys/prctl.h>
 #include <sys/socket.h>
 #include <sys/time.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdarg>
 #include <ctime>
 
 #include "fault_table.hpp"
@@ -54,6 +56,17 @@ int socket(int domain, int type, int protocol) noexcept {
   return fails(by_caller(Function::socket, CALLER))
              ? -1
              : HELIOGRAPH_NEXT(socket)(domain, type, protocol);
+}
+
+/// Only what restricts system calls fails.
+int prctl(int option, ...) noexcept {
+  va_list more;
+  va_start(more, option);
+  unsigned long values[4];
+  for (unsigned long& value : values) value = va_arg(more, unsigned long);
+  va_end(more);
+  if (option == PR_SET_SECCOMP && fails(by_caller(Function::prctl, CALLER))) return -1;
+  return HELIOGRAPH_NEXT(prctl)(option, values[0], values[1], values[2], values[3]);
 }
 
 int accept(int listener, sockaddr* address, socklen_t* bytes) {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <utility>
 
-#include "scene/environment.hpp"
+#include "scene/import_error.hpp"
 #include "session/event_log.hpp"
 
 namespace heliograph::session {
@@ -55,7 +55,9 @@ std::string_view header_fault(const fs::path& file) {
 }  // namespace
 
 UploadStore::UploadStore(UploadOptions options)
-    : options_(std::move(options)), checker_("upload checker", max_queued_checks) {
+    : options_(std::move(options)),
+      importer_(options_.import_arguments),
+      checker_("upload checker", max_queued_checks) {
   try {
     fs::create_directories(options_.folder / "scenes");
     fs::create_directories(options_.folder / "environments");
@@ -130,21 +132,28 @@ protocol::Result<UploadedFile> UploadStore::accept(Incoming& incoming) {
   }
 }
 
-/// Alone in its folder: a file that needs others fails here and not in the catalogue.
+/// Alone: a file that needs others fails here and not in the catalogue.
 void UploadStore::accept_scene(Incoming& incoming, UploadedFile& accepted) {
-  accepted.triangles = scene::import_gltf(incoming.path(), options_.import_limits).triangle_count();
+  accepted.triangles =
+      importer_.import(ImportKind::scene, incoming.name(), incoming.path()).triangles;
   incoming.keep_as(scenes_ / (incoming.name() + ".glb"));
 }
 
 /// Its content tells its format; one of the same name is replaced, in whichever format it is.
 void UploadStore::accept_environment(Incoming& incoming, UploadedFile& accepted) {
-  const scene::Environment environment = scene::load_environment(incoming.path());
-  accepted.width = environment.width;
-  accepted.height = environment.height;
+  const ImportedFile imported =
+      importer_.import(ImportKind::environment, incoming.name(), incoming.path());
+  accepted.width = imported.width;
+  accepted.height = imported.height;
   const bool exr = starts_with(incoming.path(), exr_magic);
   incoming.keep_as(environments_ / (incoming.name() + (exr ? ".exr" : ".hdr")));
   std::error_code ignored;
   fs::remove(environments_ / (incoming.name() + (exr ? ".hdr" : ".exr")), ignored);
+}
+
+void UploadStore::stop() {
+  importer_.stop();
+  checker_.stop();
 }
 
 std::uint64_t UploadStore::bytes_kept() const {

@@ -6,18 +6,19 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "protocol/result.hpp"
-#include "scene/import.hpp"
+#include "session/library/import_process.hpp"
 #include "session/worker.hpp"
 
 namespace heliograph::session {
 
 struct UploadOptions {
   std::filesystem::path folder;
-  std::uint64_t max_bytes = 256ull << 20;  // of one file
-  std::uint64_t quota = 4ull << 30;        // of all files together
-  scene::ImportLimits import_limits;
+  std::uint64_t max_bytes = 256ull << 20;     // of one file
+  std::uint64_t quota = 4ull << 30;           // of all files together
+  std::vector<std::string> import_arguments;  // see ImportProcess
 };
 
 enum class UploadKind { scene, environment };
@@ -31,8 +32,8 @@ struct UploadedFile {
   std::uint32_t height = 0;
 };
 
-/// Scenes and environments that clients upload. Each is checked by importing it in a folder of its
-/// own, and then moved atomically to where the catalogue finds it. Thread safe.
+/// Scenes and environments that clients upload. Each is checked by importing it, in a process of
+/// its own, and then moved atomically to where the catalogue finds it. Thread safe.
 class UploadStore {
  public:
   /// Creates the folders and removes unfinished uploads of an earlier process.
@@ -56,8 +57,8 @@ class UploadStore {
   /// nothing of the upload is left but the accepted scene.
   void finish(std::shared_ptr<Incoming> incoming,
               std::function<void(protocol::Result<UploadedFile>)> done);
-  /// Ends the thread; `done` is not called any more.
-  void stop() { checker_.stop(); }
+  /// Ends the thread and the import that runs; `done` is not called any more.
+  void stop();
 
  private:
   protocol::Result<UploadedFile> accept(Incoming& incoming);
@@ -72,6 +73,7 @@ class UploadStore {
   std::mutex mutex_;
   std::uint64_t reserved_bytes_ = 0;  // for files that are being received
   std::uint64_t upload_count_ = 0;
+  ImportProcess importer_;
   Worker checker_;
 };
 

@@ -1,14 +1,17 @@
 """Calls that fail: the short form of fault_sweep.py, and what happens at the start."""
 
 import asyncio
+import base64
 import errno
 import os
+import signal
 import subprocess
 import tempfile
 import unittest
 
 import fault_sweep
 from harness.faults import ALL_CALLS, OUT_OF_DEVICE_MEMORY, FaultTable, FaultyServer, rule
+from harness.gltf import document, write_glb
 from harness.viewer import Viewer
 
 
@@ -116,6 +119,75 @@ class Clock(unittest.TestCase):
                 self.assertGreaterEqual(server.call("frame.capture", {"samples": 1})["samples"], 1)
                 self.assertEqual(server.get("/health/ready")[0], 200)
                 self.assertGreater(server.faults.disarm("clock_gettime")[1], 0)
+
+
+def scene_with_jpeg(folder):
+    """A triangle with a texture, of which nothing but the decoder is to be called."""
+    content, binary = document([0, 0, 0, 1, 0, 0, 0, 1, 0], [0, 1, 2])
+    jpeg = base64.b64encode(b"\xff\xd8\xff\xe0" + bytes(60)).decode()
+    content.update(images=[{"uri": "data:image/jpeg;base64," + jpeg}], textures=[{"source": 0}],
+                   materials=[{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}])
+    content["meshes"][0]["primitives"][0]["material"] = 0
+    path = os.path.join(folder, "scene.glb")
+    write_glb(path, content, binary)
+    with open(path, "rb") as file:
+        return file.read()
+
+
+class Imports(unittest.TestCase):
+    """A decoder that fails costs the upload that it decodes, and its process."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = cls.enterClassContext(tempfile.TemporaryDirectory())
+        cls.scene = scene_with_jpeg(cls.folder)
+        # Memory of imports is the sum of these.
+        limits = ("--max-scene-bytes", "100000000", "--max-unpacked-bytes", "1000000",
+                  "--max-geometry-bytes", "100000000", "--max-texels", "10000000")
+        cls.server = cls.enterClassContext(FaultyServer(
+            "--uploads", os.path.join(cls.folder, "uploads"), "--max-import-seconds", "1", *limits))
+
+    def put(self):
+        status, _, answer = self.server.request("PUT", "/api/v1/scenes/odd", self.scene)
+        return status, answer.decode()
+
+    def put_where_the_decoder_fails(self, error):
+        with self.server.faults.fault("decoder", 1, error) as counts:
+            answer = self.put()
+        self.assertEqual(counts[1], 1)
+        self.assertEqual(self.put()[0], 201, "the next upload is imported")
+        return answer
+
+    def test_a_crash(self):
+        self.assertEqual(self.put_where_the_decoder_fails(signal.SIGSEGV),
+                         (400, "body: cannot be loaded: a decoder failed (signal 11)\n"))
+
+    def test_a_call_of_the_system(self):
+        status, answer = self.put_where_the_decoder_fails(signal.SIGSYS)
+        self.assertEqual(status, 400)
+        self.assertIn("called the system", answer)
+
+    def test_a_loop(self):
+        status, answer = self.put_where_the_decoder_fails(signal.SIGXCPU)
+        self.assertEqual((status, "longer than 1 s" in answer), (400, True), answer)
+
+    def test_memory_without_end(self):
+        self.assertEqual(self.put_where_the_decoder_fails(errno.ENOMEM)[0], 400)
+
+    def test_a_kernel_that_restricts_no_calls_is_told_of_once(self):
+        with self.server.faults.fault("prctl", 1, errno.EPERM, times=2) as counts:
+            self.assertEqual([self.put()[0], self.put()[0]], [201, 201])
+        self.assertEqual(counts[1], 2)
+        self.assertEqual(self.server.log_text().count("not restricted: Operation not permitted"), 1)
+
+    def test_a_helper_that_was_killed_is_started_again(self):
+        self.assertEqual(self.put()[0], 201)
+        for task in os.listdir(f"/proc/{self.server.process.pid}/task"):
+            children = f"/proc/{self.server.process.pid}/task/{task}/children"
+            with open(children, encoding="ascii") as file:
+                for child in file.read().split():
+                    os.kill(int(child), signal.SIGKILL)
+        self.assertEqual(self.put()[0], 201)
 
 
 if __name__ == "__main__":
