@@ -15,23 +15,26 @@ import threading
 import time
 import unittest
 
-START_TIMEOUT = 120
+# Of everything that is waited for: more where a sanitizer makes the server slower.
+TIME_FACTOR = float(os.environ.get("HELIOGRAPH_TEST_TIME_FACTOR", "1"))
+START_TIMEOUT = 120 * TIME_FACTOR
 UNKNOWN_METHOD = -32601
 
 
 class Server:
     """A running server on a free port of the loopback interface."""
 
-    def __init__(self, *arguments, scenes=None, environment=None, certificate=None, early=False):
+    def __init__(self, *arguments, scenes=None, environment=None, certificate=None, early=False,
+                 binary=None):
         """`certificate` is the one to trust where the server speaks TLS; `early`: not to wait for
-        the first frame, only for the listener."""
+        the first frame, only for the listener; `binary`: another program than that of all tests."""
         self.errors_seen = set()  # (method, code) of answers
         self.headers = {}  # that every request carries, such as a token's
         self.tls = ssl.create_default_context(cafile=certificate) if certificate else None
         self.log = tempfile.TemporaryFile(mode="w+")
         port = self._free_port() if early else 0
-        command = [os.environ["HELIOGRAPH_BINARY"], "serve", "--port", str(port), "--width", "160",
-                   "--height", "90", "--set", "accumulation.max_samples=4",
+        command = [binary or os.environ["HELIOGRAPH_BINARY"], "serve", "--port", str(port),
+                   "--width", "160", "--height", "90", "--set", "accumulation.max_samples=4",
                    "--scene-root", scenes or os.environ["HELIOGRAPH_SCENES"], *arguments]
         surroundings = {**os.environ, **(environment or {})}
         if os.environ.get("HELIOGRAPH_TEST_PRELOAD"):
@@ -142,7 +145,7 @@ class Server:
         return answer["result"]
 
     def wait_for(self, condition, what, timeout=20, pause=0.05):
-        deadline = time.monotonic() + timeout
+        deadline = time.monotonic() + timeout * TIME_FACTOR
         while not condition():
             if time.monotonic() > deadline:
                 raise AssertionError(f"{what} did not happen in {timeout} s:\n{self.log_text()}")
@@ -157,7 +160,7 @@ class Server:
     def wait(self):
         """Waits for the server to end and returns its exit code; None if it has to be killed."""
         try:
-            return self.process.wait(timeout=15)
+            return self.process.wait(timeout=15 * TIME_FACTOR)
         except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()

@@ -10,6 +10,8 @@ from dataclasses import dataclass
 
 import websockets
 
+from harness.server import TIME_FACTOR
+
 SUBPROTOCOL = "heliograph.v1"
 
 FLAG_KEY = 1
@@ -81,7 +83,7 @@ class Viewer:
 
     async def closed(self, timeout=15):
         """Waits for the end of the connection; returns close code and reason."""
-        await asyncio.wait_for(asyncio.shield(self._reader), timeout)
+        await asyncio.wait_for(asyncio.shield(self._reader), timeout * TIME_FACTOR)
         return self.socket.close_code, self.socket.close_reason
 
     async def _read(self):
@@ -130,7 +132,7 @@ class Viewer:
         self._answers[number] = waiting
         await self.send(json.dumps(
             {"jsonrpc": "2.0", "id": number, "method": method, "params": params or {}}))
-        return self.server.seen(method, await asyncio.wait_for(waiting, timeout))
+        return self.server.seen(method, await asyncio.wait_for(waiting, timeout * TIME_FACTOR))
 
     async def call(self, method, params=None, timeout=60):
         answer = await self.ask(method, params, timeout)
@@ -149,7 +151,7 @@ class Viewer:
                 self.last = await self.frames.get()
                 if condition(self.last):
                     return self.last
-        return await asyncio.wait_for(search(), timeout)
+        return await asyncio.wait_for(search(), timeout * TIME_FACTOR)
 
     @contextlib.asynccontextmanager
     async def moving(self, rate=60):
@@ -182,7 +184,7 @@ class Viewer:
 
     async def progress_with(self, stage, timeout=15):
         """The progress of a load in this stage."""
-        deadline = asyncio.get_running_loop().time() + timeout
+        deadline = asyncio.get_running_loop().time() + timeout * TIME_FACTOR
         while asyncio.get_running_loop().time() < deadline:
             for message in self.notifications:
                 if message["method"] == "scene.progress" and message["params"]["stage"] == stage:
@@ -192,7 +194,7 @@ class Viewer:
 
     async def notification(self, method, timeout=15):
         """The first notification of this name."""
-        deadline = asyncio.get_running_loop().time() + timeout
+        deadline = asyncio.get_running_loop().time() + timeout * TIME_FACTOR
         while asyncio.get_running_loop().time() < deadline:
             for message in self.notifications:
                 if message["method"] == method:
