@@ -1,4 +1,4 @@
-// Writes the seed files of the fuzzers: heliograph-fuzz-seeds gltf|images FOLDER
+// Writes the seed files of fuzzers: heliograph-fuzz-seeds gltf|images|environments|textures FOLDER
 #include <ImfRgbaFile.h>
 #include <ImfTiledRgbaFile.h>
 #include <png.h>
@@ -128,31 +128,18 @@ Bytes other_jpeg(int format, int sampling, const Bytes& pixels) {
   return file;
 }
 
-void write_images(const std::filesystem::path& folder) {
-  Bytes rgba;
-  for (int i = 0; i < 16 * 16 * 4; ++i) rgba.push_back(std::uint8_t(i * i >> 5));
-  const Bytes rgb(rgba.begin(), rgba.begin() + 16 * 16 * 3);
-  const Bytes grey(rgba.begin(), rgba.begin() + 16 * 16);
-  write(folder / "rgba.png", png(16, 16, 4, rgba));
-  write(folder / "rgb.png", png(16, 16, 3, rgb));
-  write(folder / "grey.png", png(16, 16, 1, grey));
-  write(folder / "deep.png", png(8, 16, 4, rgba, 16));
-  write(folder / "grey_alpha.png", png(16, 16, 2, Bytes(rgba.begin(), rgba.begin() + 512)));
-  write(folder / "palette.png", palette_png());
-  write(folder / "grey.jpg", other_jpeg(TJPF_GRAY, TJSAMP_GRAY, grey));
-  write(folder / "cmyk.jpg", other_jpeg(TJPF_CMYK, TJSAMP_420, rgba));
-  write(folder / "old.hdr", old_radiance());
-  const std::string ktx = "\xabKTX 20\xbb\r\n\x1a\n";
-  write(folder / "other.ktx2", Bytes(ktx.begin(), ktx.end()));
-  write(folder / "baseline.jpg", jpeg(16, 16, rgb));
-  write(folder / "progressive.jpg", jpeg(16, 16, rgb, true));
-  write(folder / "lossless.webp", webp(16, 16, rgba));
-  write(folder / "lossy.webp", webp(16, 16, rgba, false));
+/// KTX2 of every kind that is decoded.
+void write_textures(const std::filesystem::path& folder) {
   write(folder / "etc1s.ktx2", ktx2_of_etc1s());
   write(folder / "uastc.ktx2", ktx2_of_blocks(16, 16, Bytes(256, 0x1b)));
   write(folder / "zstandard.ktx2", ktx2_of_blocks(16, 16, Bytes(256, 0x1b), true));
+}
+
+/// Radiance and OpenEXR.
+void write_environments(const std::filesystem::path& folder) {
   write(folder / "plain.hdr", radiance(false));
   write(folder / "encoded.hdr", radiance(true));
+  write(folder / "old.hdr", old_radiance());
   std::vector<Imf::Rgba> pixels;
   for (int i = 0; i < 32 * 16; ++i) pixels.emplace_back(0.1f * float(i % 32), 0.2f, 3.0f, 1.0f);
   Imf::TiledRgbaOutputFile tiled((folder / "tiled.exr").c_str(), 32, 16, 8, 8, Imf::MIPMAP_LEVELS,
@@ -174,6 +161,29 @@ void write_images(const std::filesystem::path& folder) {
   }
 }
 
+void write_images(const std::filesystem::path& folder) {
+  Bytes rgba;
+  for (int i = 0; i < 16 * 16 * 4; ++i) rgba.push_back(std::uint8_t(i * i >> 5));
+  const Bytes rgb(rgba.begin(), rgba.begin() + 16 * 16 * 3);
+  const Bytes grey(rgba.begin(), rgba.begin() + 16 * 16);
+  write(folder / "rgba.png", png(16, 16, 4, rgba));
+  write(folder / "rgb.png", png(16, 16, 3, rgb));
+  write(folder / "grey.png", png(16, 16, 1, grey));
+  write(folder / "deep.png", png(8, 16, 4, rgba, 16));
+  write(folder / "grey_alpha.png", png(16, 16, 2, Bytes(rgba.begin(), rgba.begin() + 512)));
+  write(folder / "palette.png", palette_png());
+  write(folder / "grey.jpg", other_jpeg(TJPF_GRAY, TJSAMP_GRAY, grey));
+  write(folder / "cmyk.jpg", other_jpeg(TJPF_CMYK, TJSAMP_420, rgba));
+  const std::string ktx = "\xabKTX 20\xbb\r\n\x1a\n";
+  write(folder / "other.ktx2", Bytes(ktx.begin(), ktx.end()));
+  write(folder / "baseline.jpg", jpeg(16, 16, rgb));
+  write(folder / "progressive.jpg", jpeg(16, 16, rgb, true));
+  write(folder / "lossless.webp", webp(16, 16, rgba));
+  write(folder / "lossy.webp", webp(16, 16, rgba, false));
+  write_textures(folder);
+  write_environments(folder);
+}
+
 }  // namespace
 }  // namespace heliograph::scene::test
 
@@ -184,8 +194,12 @@ int main(int count, char** arguments) {
     write_documents(arguments[2]);
   } else if (kind == "images") {
     write_images(arguments[2]);
+  } else if (kind == "environments") {
+    write_environments(arguments[2]);
+  } else if (kind == "textures") {
+    write_textures(arguments[2]);
   } else {
-    std::fputs("usage: heliograph-fuzz-seeds gltf|images FOLDER\n", stderr);
+    std::fputs("usage: heliograph-fuzz-seeds gltf|images|environments|textures FOLDER\n", stderr);
     return 2;
   }
   return 0;
