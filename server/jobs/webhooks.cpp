@@ -41,15 +41,16 @@ void JobQueue::run_webhooks() {
       std::optional<DueWebhook> due;
       std::optional<protocol::JobInfo> job;
       {
-        const std::lock_guard lock(mutex_);
+        std::unique_lock lock(mutex_);
         if (stopping_) return;
         due = store_.due_webhook(seconds_now());
-        if (due) job = store_.find(due->id);
+        if (due) {
+          job = store_.find(due->id);
+        } else {
+          webhook_event_.wait_for(lock, std::chrono::duration<double>(check_interval));
+        }
       }
-      if (!due) {
-        if (!wait(webhook_event_, check_interval)) return;
-        continue;
-      }
+      if (!due) continue;
       const std::string body = protocol::encode(*job).text();
       const bool delivered =
           options_.deliver({due->url, body, signature_of(body, options_.webhook_secret)});
