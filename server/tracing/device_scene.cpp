@@ -87,10 +87,22 @@ void DeviceScene::bind(gpu::FramePlan& plan, gpu::PassBuilder& pass) const {
 StaticDeviceScene::StaticDeviceScene(const gpu::Device& device, const scene::Scene& scene,
                                      const gpu::Buffer& alpha_heap)
     : DeviceScene(device, scene, std::make_shared<const MaskTables>(device, scene), alpha_heap),
-      meshes_(build_meshes(device, scene)) {
+      meshes_(std::make_shared<const MeshHierarchies>(build_meshes(device, scene))),
+      hidden_(scene.instances.size()) {
+  place_instances(device, scene);
+}
+
+StaticDeviceScene::StaticDeviceScene(const gpu::Device& device, const StaticDeviceScene& rest,
+                                     const scene::Scene& scene, const gpu::Buffer& alpha_heap,
+                                     const std::vector<bool>& hidden)
+    : DeviceScene(device, scene, rest.masks_, alpha_heap), meshes_(rest.meshes_), hidden_(hidden) {
+  place_instances(device, scene);
+}
+
+void StaticDeviceScene::place_instances(const gpu::Device& device, const scene::Scene& scene) {
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
     const auto& [mesh, node] = scene.instances[i];
-    instances_.place(i, meshes_.address(mesh), scene.nodes[node].world);
+    instances_.place(i, hidden_[i] ? 0 : meshes_->address(mesh), scene.nodes[node].world);
   }
   device.submit_once([&](VkCommandBuffer commands) { instances_.record_build(commands); });
 }
@@ -119,8 +131,9 @@ MovingDeviceScene::MovingDeviceScene(const gpu::Device& device,
   meshes_ = MeshHierarchies(device, triangles.meshes, Rebuilds::often);
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
     const auto& [mesh, node] = scene.instances[i];
-    mesh_addresses_.push_back(deforming_[mesh] == rigid ? rest_->meshes().address(mesh)
-                                                        : meshes_.address(deforming_[mesh]));
+    const VkDeviceAddress address = deforming_[mesh] == rigid ? rest_->meshes().address(mesh)
+                                                              : meshes_.address(deforming_[mesh]);
+    mesh_addresses_.push_back(rest_->hidden()[i] ? 0 : address);
     instances_.place(i, mesh_addresses_[i], scene.nodes[node].world);
   }
   device.submit_once([&](VkCommandBuffer commands) { instances_.record_build(commands); });

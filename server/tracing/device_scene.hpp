@@ -31,13 +31,21 @@ class StaticDeviceScene : public DeviceScene {
   /// @throws gpu::GpuError when the scene is too large for the device
   StaticDeviceScene(const gpu::Device& device, const scene::Scene& scene,
                     const gpu::Buffer& alpha_heap);
+  /// Without the instances for which `hidden` is true; shares the meshes of `rest`.
+  StaticDeviceScene(const gpu::Device& device, const StaticDeviceScene& rest,
+                    const scene::Scene& scene, const gpu::Buffer& alpha_heap,
+                    const std::vector<bool>& hidden);
 
   const std::shared_ptr<const MaskTables>& masks() const { return masks_; }
-  const MeshHierarchies& meshes() const { return meshes_; }
-  std::uint64_t bytes() const override { return meshes_.bytes(); }
+  const MeshHierarchies& meshes() const { return *meshes_; }
+  const std::vector<bool>& hidden() const { return hidden_; }
+  std::uint64_t bytes() const override { return meshes_->bytes(); }
 
  private:
-  MeshHierarchies meshes_;
+  void place_instances(const gpu::Device& device, const scene::Scene& scene);
+
+  std::shared_ptr<const MeshHierarchies> meshes_;
+  std::vector<bool> hidden_;  // by instance
 };
 
 /// An animated copy, which shares the rigid meshes with the static scene.

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "gpu/frame_plan/frame_plan.hpp"
 #include "protocol/messages/kinds.hpp"
@@ -100,11 +101,16 @@ class RayTracer {
   /// Thread safe.
   virtual std::shared_ptr<const AccelerationStructure> build(const scene::Scene& scene,
                                                              const SceneBuffers& buffers) const = 0;
+  /// The same without the instances for which `hidden` is true, as `rest` has them: the result of
+  /// build() for the same scene. Thread safe.
+  virtual std::shared_ptr<const AccelerationStructure> build_without(
+      const std::vector<bool>& hidden, std::shared_ptr<const AccelerationStructure> rest,
+      const scene::Scene& scene, const SceneBuffers& buffers) const = 0;
   /// A structure for one renderer, in the pose of `scene` until updated. Instances at
   /// scene::movable_nodes() may move; meshes keep their triangles, and those in
   /// `scene.deformations` may change their vertices. Only for scenes with clips. `rest`: the result
-  /// of build() for the same scene; `tables`: the renderer's, outlive the structure. Keeps no
-  /// reference to `scene`. Thread safe.
+  /// of build() or build_without() for the same scene, whose hidden instances stay hidden;
+  /// `tables`: the renderer's, outlive the structure. Keeps no reference to `scene`. Thread safe.
   virtual std::unique_ptr<MovingStructure> build_moving(
       std::shared_ptr<const AccelerationStructure> rest, const scene::Scene& scene,
       const SceneTables& tables) const = 0;

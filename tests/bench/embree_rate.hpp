@@ -38,6 +38,11 @@ class RecordingTracer : public tracing::RayTracer {
   protocol::TracerKind kind() const override { return tracer_->kind(); }
   std::shared_ptr<const tracing::AccelerationStructure> build(
       const scene::Scene& scene, const tracing::SceneBuffers& buffers) const override;
+  std::shared_ptr<const tracing::AccelerationStructure> build_without(
+      const std::vector<bool>& hidden, std::shared_ptr<const tracing::AccelerationStructure> rest,
+      const scene::Scene& scene, const tracing::SceneBuffers& buffers) const override {
+    return tracer_->build_without(hidden, std::move(rest), scene, buffers);
+  }
   std::unique_ptr<tracing::MovingStructure> build_moving(
       std::shared_ptr<const tracing::AccelerationStructure> rest, const scene::Scene& scene,
       const tracing::SceneTables& tables) const override;

@@ -39,6 +39,12 @@ class Renderer {
   void set_materials(std::span<const shared::Material> materials);
   /// Another environment than the scene's own; null: its own again.
   void set_environment(std::shared_ptr<const LitEnvironment> environment);
+  /// Leaves out the instances for which `hidden` is true, one for each of the scene's; empty: none.
+  /// Their shadows and reflections are gone, too. set_scene shows all again.
+  void set_hidden(std::vector<bool> hidden);
+  /// Draws an outline around what these instances cover; set_scene ends that. Histories go on.
+  /// Frames of the path traced reference alone, which know no instances, have none.
+  void set_selected(std::span<const std::uint32_t> instances);
   /// Of the finished frame, pixels.
   void set_size(std::uint32_t width, std::uint32_t height);
   /// The fraction of width and height at which frames are drawn, 0 to 1: what is drawn smaller is

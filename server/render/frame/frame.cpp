@@ -13,6 +13,7 @@
 #include "render/passes/post/filter_mean.hpp"
 #include "render/passes/post/hold_mean.hpp"
 #include "render/passes/post/mean_weight.hpp"
+#include "render/passes/post/outline_selection.hpp"
 #include "render/passes/post/present.hpp"
 #include "render/passes/post/temporal_antialias.hpp"
 #include "render/passes/reference/reference.hpp"
@@ -148,6 +149,7 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   const Exposure exposure = expose(plan, in, composed.hdr, accumulated.current);
   const gpu::ImageRef resolved = temporal_antialias(plan, in, visible, exposure, composed.hdr);
   FrameOutputs outputs = show(plan, in, accumulated, exposure, resolved);
+  outline_selection(plan, in, gbuffer.instance, outputs.output);
   if (takes_over) hold_mean(plan, in, resolved, outputs.mean, outputs.mean_weight);
   outputs.radiance_cache = cache;
   return outputs;

@@ -71,6 +71,17 @@ void Renderer::set_environment(std::shared_ptr<const LitEnvironment> environment
   state_->discard_frame_plan();
 }
 
+void Renderer::set_hidden(std::vector<bool> hidden) {
+  state_->compiled.reset();  // refers to the structure
+  state_->moving->hide(std::move(hidden));
+  state_->discard_frame_plan();
+}
+
+void Renderer::set_selected(std::span<const std::uint32_t> instances) {
+  state_->moving->select(instances);
+  state_->stale = true;
+}
+
 void Renderer::set_size(std::uint32_t width, std::uint32_t height) {
   if (state_->extent.width == width && state_->extent.height == height) return;
   state_->extent = {width, height};

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
+#include <utility>
 
 #include "render/resources/lights/light_table.hpp"
 #include "render/resources/placement.hpp"
@@ -52,6 +54,8 @@ struct MovingScene::Moving {
   bool deform(const scene::Scene& scene, const scene::Pose& before, const scene::Pose& pose);
   void move_draws(const scene::Scene& scene);
   void update_structure();
+  /// Brings a structure in the default pose to the present one.
+  void pose_structure(const scene::Scene& scene);
 
   std::vector<shared::Instance> instances;
   std::vector<Draw> draws;
@@ -178,13 +182,28 @@ void MovingScene::Moving::update_structure() {
   structure->update({worlds, placed, meshes});
 }
 
+void MovingScene::Moving::pose_structure(const scene::Scene& scene) {
+  std::vector<std::uint32_t> elsewhere;
+  for (std::uint32_t i = 0; i < worlds.size(); ++i) {
+    if (worlds[i] != scene.nodes[scene.instances[i].node].world) elsewhere.push_back(i);
+  }
+  std::vector<tracing::Movement::Mesh> meshes;
+  for (const Deforming& mesh : deforming) meshes.push_back({mesh.mesh, mesh.vertices, mesh.bounds});
+  structure->update({worlds, elsewhere, meshes});
+}
+
 MovingScene::MovingScene(const gpu::Device& device, const tracing::RayTracer& tracer,
                          std::shared_ptr<const SceneResources> rest)
     : device_(device),
       resources_(std::move(rest)),
       environment_(resources_->environment),
       emissive_(device, resources_->emissive),
-      pose_(scene::rest_pose(*resources_->scene)) {
+      pose_(scene::rest_pose(*resources_->scene)),
+      tracer_(tracer),
+      selection_(device, "selected instances",
+                 (resources_->scene->instances.size() / 32 + 1) * sizeof(std::uint32_t),
+                 VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Memory::upload) {
+  select({});
   for (const scene::Light& light : resources_->scene->lights)
     lights_at_rest_.push_back(light.device);
   lights_ = lights_at_rest_;
@@ -222,11 +241,41 @@ bool MovingScene::remake_emissive() {
   const scene::Scene& scene = *resources_->scene;
   const std::size_t capacity = emissive_capacity(scene, materials());
   if (capacity == 0 && !emissive_.may_shine()) return false;
-  std::vector<glm::mat4> worlds;
-  for (const scene::Instance& instance : scene.instances) {
-    worlds.push_back(pose_.worlds[instance.node]);
-  }
+  const std::vector<glm::mat4> worlds = shining_worlds();
   return emissive_.remake({scene, materials(), resources_->emission_means, worlds}, capacity);
+}
+
+/// Of every instance; those of hidden ones have no size, so that nothing of them shines.
+std::vector<glm::mat4> MovingScene::shining_worlds() const {
+  const scene::Scene& scene = *resources_->scene;
+  std::vector<glm::mat4> worlds;
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const bool hidden = !hidden_.empty() && hidden_[i];
+    worlds.push_back(hidden ? glm::mat4(0.0f) : pose_.worlds[scene.instances[i].node]);
+  }
+  return worlds;
+}
+
+void MovingScene::hide(std::vector<bool> hidden) {
+  hidden_ = std::move(hidden);
+  structure_is_old_ = true;
+  list_shown_draws();
+  remake_emissive();
+}
+
+void MovingScene::list_shown_draws() {
+  shown_draws_.clear();
+  if (hidden_.empty()) return;
+  std::ranges::copy_if(moving_ ? moving_->draws : resources_->draws,
+                       std::back_inserter(shown_draws_),
+                       [&](const Draw& draw) { return !hidden_[draw.constants.instance]; });
+}
+
+void MovingScene::select(std::span<const std::uint32_t> instances) {
+  auto* const words = reinterpret_cast<std::uint32_t*>(selection_.mapped());
+  std::memset(words, 0, selection_.size());
+  for (const std::uint32_t i : instances) words[i / 32] |= 1u << (i % 32);
+  has_selection_ = !instances.empty();
 }
 
 std::uint32_t MovingScene::features() const {
@@ -277,12 +326,28 @@ void MovingScene::set_environment(std::shared_ptr<const LitEnvironment> environm
   environment_ = std::move(environment);
 }
 
-const tracing::AccelerationStructure& MovingScene::structure() const {
+const tracing::AccelerationStructure& MovingScene::structure() {
+  if (std::exchange(structure_is_old_, false)) make_structure();
   if (moving_) return *moving_->structure;
-  return *resources_->rest_structure;
+  return shown_structure_ ? *shown_structure_ : *resources_->rest_structure;
+}
+
+void MovingScene::make_structure() {
+  const scene::Scene& scene = *resources_->scene;
+  const auto& rest = resources_->rest_structure;
+  std::shared_ptr<const tracing::AccelerationStructure> shown;
+  if (!hidden_.empty()) {
+    shown = tracer_.build_without(hidden_, rest, scene, resources_->rest_tables);
+  }
+  if (moving_) {
+    moving_->structure = tracer_.build_moving(shown ? shown : rest, scene, *tables_);
+    moving_->pose_structure(scene);
+  }
+  shown_structure_ = std::move(shown);
 }
 
 const std::vector<Draw>& MovingScene::draws() const {
+  if (!hidden_.empty()) return shown_draws_;
   return moving_ ? moving_->draws : resources_->draws;
 }
 
@@ -325,9 +390,10 @@ void MovingScene::move_things(const scene::Pose& before) {
   moving_->pose_is_new = false;
   const bool instances = moving_->move_instances(scene, pose_);
   const bool shapes = moving_->deform(scene, before, pose_);
-  emissive_.follow({scene, materials(), resources_->emission_means, moving_->worlds},
-                   moving_->placed);
+  const std::vector<glm::mat4> shining = shining_worlds();
+  emissive_.follow({scene, materials(), resources_->emission_means, shining}, moving_->placed);
   moving_->move_draws(scene);
+  list_shown_draws();
   moving_->update_structure();
   moving_->settled = moving_->placed.empty() &&
                      std::ranges::none_of(moving_->deforming, &Moving::Deforming::moved);

@@ -28,8 +28,10 @@ class MovingScene {
   const SceneResources& resources() const { return *resources_; }
   /// Every table as it is now; see tracing::SceneTables for how to read them.
   const tracing::SceneTables& tables() const { return *tables_; }
-  const tracing::AccelerationStructure& structure() const;
-  /// Instances as the rasteriser draws them, in the order of SceneResources::draws.
+  /// The first call after hide() makes another one.
+  const tracing::AccelerationStructure& structure();
+  /// Instances as the rasteriser draws them, in the order of SceneResources::draws; without those
+  /// that are hidden.
   const std::vector<Draw>& draws() const;
   /// Vertices one frame ago of the meshes that deform; only where Draw::previous_vertex points.
   const gpu::Buffer& previous_vertices() const;
@@ -59,6 +61,16 @@ class MovingScene {
   /// Another environment than the scene's own; plans must be rebuilt.
   void set_environment(std::shared_ptr<const LitEnvironment> environment);
 
+  /// Leaves out instances for which `hidden` is true, in every respect: rays miss them, nothing
+  /// draws them, and their triangles emit no light. Empty: there are none. Never while a frame
+  /// runs; plans must be rebuilt.
+  void hide(std::vector<bool> hidden);
+  /// Marks instances for outline_selection() in place of those before. Never while a frame runs.
+  void select(std::span<const std::uint32_t> instances);
+  bool has_selection() const { return has_selection_; }
+  /// A bit for each instance, whether it is selected.
+  const gpu::Buffer& selection() const { return selection_; }
+
   /// What the next advance() goes to: a clip of this scene at `seconds`, or rest when null.
   /// @return whether that differs from where the scene is going already
   bool set_pose(const scene::Clip* clip, double seconds);
@@ -85,6 +97,9 @@ class MovingScene {
 
   std::span<const shared::Material> materials() const;
   bool remake_emissive();
+  std::vector<glm::mat4> shining_worlds() const;
+  void list_shown_draws();
+  void make_structure();
   void bind_tables();
   void move_things(const scene::Pose& before);
   bool move_lights(const scene::Pose& before);
@@ -102,6 +117,13 @@ class MovingScene {
   std::vector<shared::Light> previous_lights_;
   bool geometry_moved_ = false;
   std::unique_ptr<Moving> moving_;  // null for scenes without clips
+  const tracing::RayTracer& tracer_;
+  std::vector<bool> hidden_;  // by instance; empty: none
+  std::vector<Draw> shown_draws_;
+  std::shared_ptr<const tracing::AccelerationStructure> shown_structure_;  // where any are hidden
+  bool structure_is_old_ = false;
+  gpu::Buffer selection_;
+  bool has_selection_ = false;
   std::optional<tracing::SceneTables> tables_;
 };
 

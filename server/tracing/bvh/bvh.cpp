@@ -71,7 +71,7 @@ std::vector<shared::BvhTriangle> flat_triangles(const scene::Scene& scene, const
     const scene::Mesh& mesh = scene.meshes[scene.instances[i].mesh];
     const BvhMesh& traced = bvh.meshes[scene.instances[i].mesh];
     const glm::mat4& world = scene.nodes[scene.instances[i].node].world;
-    if (!bvh.flat[i] || !traced.covers || !traceable_inverse(world)) continue;
+    if (!bvh.flat[i] || bvh.hidden[i] || !traced.covers || !traceable_inverse(world)) continue;
     for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
       const auto [a, b, c] = corners(mesh, t);
       const auto moved = [&](const glm::vec3& at) {
@@ -266,7 +266,7 @@ BvhTopLevel build_top_level(RTCDevice device, const Bvh& bvh,
   for (std::size_t i = 0; i < worlds.size(); ++i) {
     const BvhMesh& mesh = bvh.meshes[mesh_of[i]];
     const auto inverse = traceable_inverse(worlds[i]);
-    if (bvh.flat[i] || mesh.root == shared::bvh_no_link || !inverse) continue;
+    if (bvh.flat[i] || bvh.hidden[i] || mesh.root == shared::bvh_no_link || !inverse) continue;
     const glm::mat4 rows = glm::transpose(*inverse);
     place(world_box(bounds[mesh_of[i]], worlds[i]),
           {rows[0], rows[1], rows[2], mesh.root, number(i), mesh.mask, number(0)});
@@ -294,6 +294,8 @@ Bvh build_bvh(RTCDevice device, const scene::Scene& scene, const BvhLayout& layo
   Bvh bvh;
   bvh.flat = layout.flat ? flat_instances(scene, layout.most_bytes)
                          : std::vector<bool>(scene.instances.size());
+  bvh.hidden = layout.hidden;
+  bvh.hidden.resize(scene.instances.size());
   append_masks(bvh, scene);
   std::vector<bool> instanced(scene.meshes.size());
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {

@@ -27,6 +27,7 @@ struct BvhMesh {
 struct BvhLayout {
   bool flat = true;                       // what no clip can move
   std::uint64_t most_bytes = 256u << 20;  // of copies of triangles: flat_instances()
+  std::vector<bool> hidden = {};          // by instance: whether rays miss it; empty: they hit all
 };
 
 /// A two-level bounding volume hierarchy: a tree over instances, whose leaves link to one tree per
@@ -41,7 +42,8 @@ struct Bvh {
   std::vector<BvhMesh> meshes;
   BvhMesh flat_tree;
   scene::Bounds flat_bounds;     // world
-  std::vector<bool> flat;        // by instance: whether it is in that tree
+  std::vector<bool> flat;        // by instance: whether it is in that tree, unless it is hidden
+  std::vector<bool> hidden;      // by instance
   std::size_t first_placed = 0;  // index of the first instance record; the rest is the upper level
   std::uint32_t mesh_depth = 0;  // maximum over the meshes
 };

@@ -135,6 +135,14 @@ class SoftwareTracer : public RayTracer {
                                                      !scene.clips.empty(), buffers.alpha_heap);
   }
 
+  std::shared_ptr<const AccelerationStructure> build_without(
+      const std::vector<bool>& hidden, std::shared_ptr<const AccelerationStructure>,
+      const scene::Scene& scene, const SceneBuffers& buffers) const override {
+    return std::make_shared<StaticSoftwareStructure>(
+        device_, build_bvh(embree_.get(), scene, {.hidden = hidden}), !scene.clips.empty(),
+        buffers.alpha_heap);
+  }
+
   std::unique_ptr<MovingStructure> build_moving(std::shared_ptr<const AccelerationStructure> rest,
                                                 const scene::Scene& scene,
                                                 const SceneTables&) const override {

@@ -19,6 +19,13 @@ class DriverTracer : public RayTracer {
     return std::make_shared<StaticDeviceScene>(device_, scene, buffers.alpha_heap);
   }
 
+  std::shared_ptr<const AccelerationStructure> build_without(
+      const std::vector<bool>& hidden, std::shared_ptr<const AccelerationStructure> rest,
+      const scene::Scene& scene, const SceneBuffers& buffers) const override {
+    return std::make_shared<StaticDeviceScene>(
+        device_, dynamic_cast<const StaticDeviceScene&>(*rest), scene, buffers.alpha_heap, hidden);
+  }
+
   std::unique_ptr<MovingStructure> build_moving(std::shared_ptr<const AccelerationStructure> rest,
                                                 const scene::Scene& scene,
                                                 const SceneTables& tables) const override {

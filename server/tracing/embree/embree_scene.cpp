@@ -83,7 +83,7 @@ EmbreeScene::EmbreeScene(RTCDevice device, const scene::Scene& scene,
   const std::vector<bool> flat = layout.flat ? flat_instances(scene, layout.most_bytes)
                                              : std::vector<bool>(scene.instances.size());
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-    placed_.push_back({scene.instances[i].mesh, flat[i], nullptr});
+    placed_.push_back({scene.instances[i].mesh, flat[i], false, nullptr});
   }
   std::vector<bool> instanced(scene.meshes.size());
   for (const Placed& each : placed_) {
@@ -108,6 +108,26 @@ EmbreeScene::EmbreeScene(RTCDevice device, const scene::Scene& scene,
   place_instances(scene);
 }
 
+EmbreeScene::EmbreeScene(RTCDevice device, const scene::Scene& scene, const EmbreeScene& rest,
+                         const std::vector<bool>& hidden)
+    : device_(device),
+      layout_(rest.layout_),
+      meshes_(rest.meshes_),
+      mesh_scenes_(rest.mesh_scenes_) {
+  EmbreeHandle<RTCScene> flat;
+  for (unsigned i = 0; i < rest.placed_.size(); ++i) {
+    const Placed& each = rest.placed_[i];
+    placed_.push_back({each.mesh, each.flat, hidden[i], nullptr});
+    if (hidden[i] || !in_flat_scene(scene, i)) continue;
+    if (!flat) flat = new_embree_scene(device, layout_.build);
+    rtcAttachGeometryByID(flat.get(), rtcGetGeometry(rest.flat_.get(), i), i);
+  }
+  if (flat) rtcCommitScene(flat.get());
+  check_embree(device, "build the scene of what is shown");
+  flat_ = std::move(flat);
+  place_instances(scene);
+}
+
 EmbreeScene::EmbreeScene(RTCDevice device, const scene::Scene& scene, const EmbreeScene& rest)
     : device_(device),
       layout_(rest.layout_),
@@ -115,7 +135,9 @@ EmbreeScene::EmbreeScene(RTCDevice device, const scene::Scene& scene, const Embr
       mesh_scenes_(rest.mesh_scenes_),
       flat_(rest.flat_),
       fast_(rest.fast_) {
-  for (const Placed& each : rest.placed_) placed_.push_back({each.mesh, each.flat, nullptr});
+  for (const Placed& each : rest.placed_) {
+    placed_.push_back({each.mesh, each.flat, each.hidden, nullptr});
+  }
   for (const scene::Deformation& deformation : scene.deformations) {
     auto& deforming = mesh_scenes_[deformation.mesh];
     if (!deforming) continue;
@@ -134,10 +156,16 @@ EmbreeScenes EmbreeScene::scenes(RayKind kind) const {
   return {flat, {top_.get(), robust}};
 }
 
+bool EmbreeScene::in_flat_scene(const scene::Scene& scene, std::size_t instance) const {
+  const auto& [mesh, node] = scene.instances[instance];
+  return placed_[instance].flat && !meshes_[mesh]->empty() &&
+         traceable_inverse(scene.nodes[node].world);
+}
+
 void EmbreeScene::place_instances(const scene::Scene& scene) {
   for (std::size_t i = 0; i < placed_.size(); ++i) {
     Placed& each = placed_[i];
-    if (each.flat || !mesh_scenes_[each.mesh]) continue;
+    if (each.flat || each.hidden || !mesh_scenes_[each.mesh]) continue;
     if (!top_) top_ = new_embree_scene(device_, {layout_.build.robust, RTC_BUILD_QUALITY_MEDIUM});
     each.instance.reset(rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_INSTANCE));
     rtcSetGeometryInstancedScene(each.instance.get(), mesh_scenes_[each.mesh]->handle());

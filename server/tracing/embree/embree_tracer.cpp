@@ -103,6 +103,13 @@ class EmbreeTracer : public RayTracer {
     return structure;
   }
 
+  std::shared_ptr<const AccelerationStructure> build_without(
+      const std::vector<bool>& hidden, std::shared_ptr<const AccelerationStructure> rest,
+      const scene::Scene& scene, const SceneBuffers&) const override {
+    return std::make_shared<EmbreeStructure>(EmbreeScene(
+        embree_.get(), scene, dynamic_cast<const EmbreeStructure&>(*rest).scene(), hidden));
+  }
+
   std::unique_ptr<MovingStructure> build_moving(std::shared_ptr<const AccelerationStructure> rest,
                                                 const scene::Scene& scene,
                                                 const SceneTables&) const override {
