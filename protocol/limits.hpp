@@ -30,6 +30,9 @@ inline constexpr float max_coordinate = 1e9f;
 inline constexpr float min_field_of_view = 1.0f;
 inline constexpr float max_field_of_view = 170.0f;
 
+/// Nodes of a scene in one message.
+inline constexpr std::size_t max_listed_nodes = 10000;
+
 /// Lengths of names, bytes.
 inline constexpr std::size_t max_session_name = 64;  // viewers, presets and buffers as well
 inline constexpr std::size_t max_node_name = 256;    // cameras, clips, lights, materials, variants

@@ -8,6 +8,7 @@
 #include "protocol/messages/job_messages.hpp"
 #include "protocol/messages/loading_messages.hpp"
 #include "protocol/messages/membership_messages.hpp"
+#include "protocol/messages/node_messages.hpp"
 #include "protocol/messages/render_messages.hpp"
 #include "protocol/messages/scene_messages.hpp"
 #include "protocol/messages/session_messages.hpp"

@@ -357,6 +357,7 @@ struct PickResult {
   std::optional<float> distance;
   std::optional<std::string> object;
   std::optional<std::string> material;
+  std::optional<std::uint32_t> node;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -372,6 +373,7 @@ struct PickResult {
             .or_null(),
         field("object", &PickResult::object, "Name of the node, otherwise of the mesh.").or_null(),
         field("material", &PickResult::material, "Name for materials.patch.").or_null(),
+        field("node", &PickResult::node, "Id of the node, as nodes.list has it.").or_null(),
     };
   }
   bool operator==(const PickResult&) const = default;

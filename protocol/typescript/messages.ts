@@ -364,6 +364,12 @@ export interface CameraOrbitParams {
   yaw?: number;
 }
 
+/** Parameters of camera.fit. */
+export interface CameraFitParams {
+  /** Ids from nodes.list, which are shown with all below them; absent: the whole scene. */
+  nodes?: number[];
+}
+
 /** Result of animation.list. */
 export interface AnimationState {
   /** The clip that poses the scene; null: the default pose. */
@@ -777,6 +783,8 @@ export interface Pick {
   hit: boolean;
   /** Name for materials.patch. */
   material: string | null;
+  /** Id of the node, as nodes.list has it. */
+  node: number | null;
   /** Geometric normal, facing the camera, world space. */
   normal: Vector3 | null;
   /** Name of the node, otherwise of the mesh. */
@@ -806,6 +814,97 @@ export interface Inspection {
   row: number;
   /** Width of the image. [pixels] */
   width: number;
+}
+
+/** Parameters of nodes.list. */
+export interface NodesListParams {
+  /** Most nodes to list. */
+  count?: number;
+  /** How many nodes to leave out at the beginning. */
+  first?: number;
+  /** Part of the names to list, in any case; absent: all nodes. */
+  search?: string;
+}
+
+export interface NodeInfo {
+  /** Number of the node; parents have smaller ones. */
+  id: number;
+  /** Meshes at the node itself. */
+  meshes: number;
+  /** Its name, otherwise that of its mesh; may be empty. */
+  name: string;
+  /** Id of its parent; null: it has none. */
+  parent: number | null;
+  /** Whether it is visible, unless a node above it is not or others are isolated. */
+  visible: boolean;
+}
+
+/** Result of nodes.list. */
+export interface NodeList {
+  /** See nodes.isolate. */
+  isolated: number[];
+  /** Parents come before their children. */
+  nodes: NodeInfo[];
+  /** Revision of the session's state. */
+  rev: number;
+  /** Nodes that there are, or that match the search. */
+  total: number;
+}
+
+/** Parameters of nodes.info. */
+export interface NodesInfoParams {
+  /** Ids from nodes.list. */
+  nodes: number[];
+}
+
+/** Result of nodes.info. */
+export interface NodeProperties {
+  /** World space box around their meshes before any animation; null: they have none. */
+  bounds: SceneInfoBounds | null;
+  /** Placed meshes, likewise. */
+  instances: number;
+  /** Names for materials.patch. */
+  materials: string[];
+  /** Names of the nodes, in the order of the request. */
+  names: string[];
+  /**
+   * Whether any of their meshes is shown, which also depends on the nodes above and on
+   * nodes.isolate.
+   */
+  shown: boolean;
+  /** Of them and all nodes below them. */
+  triangles: number;
+}
+
+export interface NodesPatchParamsPatch {
+  /** Whether the nodes and those below them are seen, cast shadows and are reflected. */
+  visible?: boolean | null;
+}
+
+/** Parameters of nodes.patch. */
+export interface NodesPatchParams {
+  /** Ids from nodes.list. */
+  nodes: number[];
+  /** A merge patch (RFC 7386); null restores the value of the scene file. */
+  patch: NodesPatchParamsPatch;
+}
+
+/** Result of nodes.patch. */
+export interface NodesVisibility {
+  /** Ids of all nodes that are not visible. */
+  hidden: number[];
+  /** See nodes.isolate. */
+  isolated: number[];
+  /** Revision of the session's state. */
+  rev: number;
+}
+
+/** Result of selection.get. */
+export interface Selection {
+  /** Ids of the selected nodes, ascending. */
+  nodes: number[];
+  /** Revision of the session's state. */
+  rev: number;
 }
 
 export interface JobCreateParamsEntriesView {
@@ -1123,6 +1222,28 @@ export interface EnvironmentChangedNotification {
   rev: number;
 }
 
+/** Parameters of the notification nodes.changed. */
+export interface NodesChangedNotification {
+  /** The viewer that changed it; empty: the server. */
+  by: string;
+  /** Ids of all nodes that are not visible. */
+  hidden: number[];
+  /** See nodes.isolate. */
+  isolated: number[];
+  /** Revision of the session's state. */
+  rev: number;
+}
+
+/** Parameters of the notification selection.changed. */
+export interface SelectionChangedNotification {
+  /** The viewer that selected them; empty: the server. */
+  by: string;
+  /** Ids of the selected nodes, ascending. */
+  nodes: number[];
+  /** Revision of the session's state. */
+  rev: number;
+}
+
 /** The content of error.data. */
 export interface ErrorData {
   /** The valid values. */
@@ -1183,8 +1304,8 @@ export interface Methods {
   "camera.set": { params: CameraSetParams; result: Camera };
   /** Rotates the camera around its target and changes its distance. */
   "camera.orbit": { params: CameraOrbitParams; result: Camera };
-  /** Moves the camera back until the whole scene is in view. */
-  "camera.fit": { params: Empty; result: Camera };
+  /** Moves the camera so that the whole scene or some of its nodes fill the view. */
+  "camera.fit": { params: CameraFitParams; result: Camera };
   /** Lists the scene's animation clips and returns the state of playback. */
   "animation.list": { params: Empty; result: AnimationState };
   /** Plays a clip. A camera that the clip animates follows it until a viewer moves the camera. */
@@ -1258,6 +1379,22 @@ export interface Methods {
   "scene.pick": { params: ScenePickParams; result: Pick };
   /** Returns the value of every buffer at a point of the image. */
   "frame.inspect": { params: ScenePickParams; result: Inspection };
+  /** Lists the nodes of the scene, all of them or those of a name, a part at a time. */
+  "nodes.list": { params: NodesListParams; result: NodeList };
+  /** Returns what nodes consist of, together with all nodes below them. */
+  "nodes.info": { params: NodesInfoParams; result: NodeProperties };
+  /** Hides nodes of this session's scene, with all below them, or shows them again. */
+  "nodes.patch": { params: NodesPatchParams; result: NodesVisibility };
+  /**
+   * Shows only these nodes, with all below them, unless they are hidden; an empty list ends that.
+   */
+  "nodes.isolate": { params: NodesInfoParams; result: NodesVisibility };
+  /** Returns the nodes that the session's viewers have selected. */
+  "selection.get": { params: Empty; result: Selection };
+  /**
+   * Selects nodes in place of those before; frames show them, with all below them, in an outline.
+   */
+  "selection.set": { params: NodesInfoParams; result: Selection };
   /** Queues images and videos of scenes to render into files, beside the sessions. */
   "job.create": { params: JobCreateParams; result: JobCreateResult };
   /** Lists jobs, the newest first, without their files. */
@@ -1301,6 +1438,10 @@ export interface Notifications {
   "materials.changed": MaterialsChangedNotification;
   /** Another viewer changed the environment. */
   "environment.changed": EnvironmentChangedNotification;
+  /** Another viewer hid, showed or isolated nodes. */
+  "nodes.changed": NodesChangedNotification;
+  /** Another viewer changed the selection. */
+  "selection.changed": SelectionChangedNotification;
   /**
    * A job was created, begun, canceled, ended, or has more images; for every viewer of the server.
    * Without files.

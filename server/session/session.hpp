@@ -9,6 +9,7 @@
 
 #include "protocol/messages/messages.hpp"
 #include "protocol/result.hpp"
+#include "session/nodes/session_nodes.hpp"
 #include "session/rendering/pixel_budget.hpp"
 #include "session/session_camera.hpp"
 #include "session/session_captures.hpp"
@@ -47,6 +48,7 @@ class Session {
   // Commands, by what they change.
   SessionScene& scene() { return scene_; }
   const SessionScene& scene() const { return scene_; }
+  SessionNodes& nodes() { return nodes_; }
   SessionCamera& camera() { return camera_; }
   SessionTimeline& timeline() { return timeline_; }
   const SessionTimeline& timeline() const { return timeline_; }
@@ -118,6 +120,7 @@ class Session {
   std::atomic<bool> ended_ = false;
   std::atomic<bool> modified_ = false;
   SessionScene scene_{core_};
+  SessionNodes nodes_{core_};
   SessionCamera camera_{core_};
   SessionTimeline timeline_{core_};
   SessionCaptures captures_{core_};

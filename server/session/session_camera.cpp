@@ -1,5 +1,7 @@
 #include "session/session_camera.hpp"
 
+#include "session/nodes/node_properties.hpp"
+
 namespace heliograph::session {
 
 using protocol::Camera;
@@ -30,10 +32,16 @@ Result<Camera> SessionCamera::orbit(const protocol::CameraOrbit& request, const 
   return publish(by);
 }
 
-Result<Camera> SessionCamera::fit(const std::string& by) {
+Result<Camera> SessionCamera::fit(const protocol::CameraFit& request, const std::string& by) {
   const std::lock_guard lock(core_.mutex);
   if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
-  core_.camera.fit(*core_.scene, core_.aspect());
+  scene::Bounds bounds = core_.scene->bounds;
+  if (request.nodes) {
+    if (const auto known = core_.nodes.check(*request.nodes, "nodes"); !known) return known.error();
+    bounds = node_bounds(*core_.scene, core_.nodes, *request.nodes);
+    if (bounds.empty()) return protocol::error::invalid("nodes", "have no meshes to show");
+  }
+  core_.camera.fit(bounds, core_.aspect());
   return publish(by);
 }
 

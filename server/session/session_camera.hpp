@@ -18,8 +18,8 @@ class SessionCamera {
   protocol::Result<protocol::Camera> set(const protocol::CameraSet& request, const std::string& by);
   protocol::Result<protocol::Camera> orbit(const protocol::CameraOrbit& request,
                                            const std::string& by);
-  /// Shows the whole scene.
-  protocol::Result<protocol::Camera> fit(const std::string& by);
+  /// Shows the whole scene, or some of its nodes.
+  protocol::Result<protocol::Camera> fit(const protocol::CameraFit& request, const std::string& by);
 
  private:
   protocol::Camera publish(const std::string& by);

@@ -19,6 +19,7 @@ void SessionScene::show(LoadedScene scene, const std::string& by) {
   core_.scene = scene.scene;
   core_.scene_info = describe_scene(scene);
   core_.edits = SceneEdits(core_.scene);
+  core_.nodes = NodeState(core_.scene);
   core_.resources = std::move(scene.resources);
   core_.timeline.reset_clock();
   core_.camera.reset(*core_.scene, core_.aspect());
@@ -34,6 +35,7 @@ void SessionScene::unload(const std::string& by) {
   core_.scene = nullptr;
   core_.scene_info = {};
   core_.edits = {};
+  core_.nodes = {};
   core_.resources = nullptr;
   core_.environment = nullptr;
   core_.environment_name.reset();

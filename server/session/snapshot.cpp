@@ -46,7 +46,7 @@ Result<void> apply_view(Session& session, const SnapshotView& view) {
     if (!set) return set.error();
   }
   if (view.fit) {
-    if (const auto fitted = session.camera().fit({}); !fitted) return fitted.error();
+    if (const auto fitted = session.camera().fit({}, {}); !fitted) return fitted.error();
   }
   if (!view.background) return {};
   const protocol::RawJson patch(nlohmann::json{{"environment", {{"visible", *view.background}}}});

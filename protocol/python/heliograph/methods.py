@@ -122,12 +122,15 @@ class Camera(_Group):
             "distance": distance, "dolly": dolly, "pitch": pitch, "seq": seq, "yaw":
             yaw}))
 
-    def fit(self) -> Dict[str, Any]:
-        """Moves the camera back until the whole scene is in view.
+    def fit(self, *, nodes: List[int] = _UNSET) -> Dict[str, Any]:
+        """Moves the camera so that the whole scene or some of its nodes fill the view.
+
+        nodes: Ids from nodes.list, which are shown with all below them; absent: the whole
+            scene.
 
         Returns: eye, name, rev, target, up, vertical_fov.
         """
-        return self._call("camera.fit", {})
+        return self._call("camera.fit", _given({"nodes": nodes}))
 
 
 class Environment(_Group):
@@ -305,6 +308,53 @@ class Materials(_Group):
         return self._call("materials.patch", _given({"material": material, "patch": patch}))
 
 
+class Nodes(_Group):
+    def list(
+            self,
+            *,
+            count: int = _UNSET,
+            first: int = _UNSET,
+            search: str = _UNSET) -> Dict[str, Any]:
+        """Lists the nodes of the scene, all of them or those of a name, a part at a time.
+
+        count: Most nodes to list.
+        first: How many nodes to leave out at the beginning.
+        search: Part of the names to list, in any case; absent: all nodes.
+
+        Returns: isolated, nodes, rev, total.
+        """
+        return self._call("nodes.list", _given({"count": count, "first": first, "search": search}))
+
+    def info(self, *, nodes: List[int]) -> Dict[str, Any]:
+        """Returns what nodes consist of, together with all nodes below them.
+
+        nodes: Ids from nodes.list.
+
+        Returns: bounds, instances, materials, names, shown, triangles.
+        """
+        return self._call("nodes.info", _given({"nodes": nodes}))
+
+    def patch(self, *, nodes: List[int], patch: Dict[str, Any]) -> Dict[str, Any]:
+        """Hides nodes of this session's scene, with all below them, or shows them again.
+
+        nodes: Ids from nodes.list.
+        patch: A merge patch (RFC 7386); null restores the value of the scene file.
+
+        Returns: hidden, isolated, rev.
+        """
+        return self._call("nodes.patch", _given({"nodes": nodes, "patch": patch}))
+
+    def isolate(self, *, nodes: List[int]) -> Dict[str, Any]:
+        """Shows only these nodes, with all below them, unless they are hidden; an empty list
+        ends that.
+
+        nodes: Ids from nodes.list.
+
+        Returns: hidden, isolated, rev.
+        """
+        return self._call("nodes.isolate", _given({"nodes": nodes}))
+
+
 class Reference(_Group):
     def start(
             self,
@@ -391,9 +441,28 @@ class Scene(_Group):
         x: Fraction of the image width, from the left.
         y: Fraction of the image height, from the top.
 
-        Returns: distance, hit, material, normal, object, position.
+        Returns: distance, hit, material, node, normal, object, position.
         """
         return self._call("scene.pick", _given({"x": x, "y": y}))
+
+
+class Selection(_Group):
+    def get(self) -> Dict[str, Any]:
+        """Returns the nodes that the session's viewers have selected.
+
+        Returns: nodes, rev.
+        """
+        return self._call("selection.get", {})
+
+    def set(self, *, nodes: List[int]) -> Dict[str, Any]:
+        """Selects nodes in place of those before; frames show them, with all below them, in an
+        outline.
+
+        nodes: Ids from nodes.list.
+
+        Returns: nodes, rev.
+        """
+        return self._call("selection.set", _given({"nodes": nodes}))
 
 
 class Session(_Group):
@@ -612,9 +681,11 @@ class Methods:
         self.job = Job(call)
         self.lights = Lights(call)
         self.materials = Materials(call)
+        self.nodes = Nodes(call)
         self.reference = Reference(call)
         self.rpc = Rpc(call)
         self.scene = Scene(call)
+        self.selection = Selection(call)
         self.session = Session(call)
         self.settings = Settings(call)
         self.stats = Stats(call)

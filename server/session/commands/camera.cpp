@@ -21,10 +21,11 @@ void add_camera_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
       [](Session& session, const protocol::CameraOrbit& request, const std::string& viewer) {
         return session.camera().orbit(request, viewer);
       });
-  add_command<methods::camera_fit>(dispatcher, host,
-                                   [](Session& session, const Empty&, const std::string& viewer) {
-                                     return session.camera().fit(viewer);
-                                   });
+  add_command<methods::camera_fit>(
+      dispatcher, host,
+      [](Session& session, const protocol::CameraFit& request, const std::string& viewer) {
+        return session.camera().fit(request, viewer);
+      });
 }
 
 }  // namespace heliograph::session

@@ -3,6 +3,7 @@
 #include "render/api/renderer.hpp"
 #include "session/commands/commands.hpp"
 #include "session/library/scene_description.hpp"
+#include "session/nodes/node_state.hpp"
 
 // What is at a point of the image.
 
@@ -34,7 +35,8 @@ PickResult describe(const render::SurfacePoint& surface, const scene::Scene& sce
           .normal = to_protocol(surface.normal),
           .distance = surface.distance,
           .object = object_name(scene, instance),
-          .material = describe_materials(scene).at(material).name};
+          .material = describe_materials(scene).at(material).name,
+          .node = nodes_of_instances(scene).at(surface.instance)};
 }
 
 Result<PickResult> pick(const render::Renderer& renderer, const scene::Scene& scene,

@@ -67,6 +67,14 @@ void SessionView::adopt_edits(const RenderState& before) {
   if (state_.materials != (same_scene ? before.materials : nullptr)) {
     renderer_->set_materials(state_.materials ? *state_.materials : state_.scene->materials);
   }
+  if (state_.hidden != (same_scene ? before.hidden : nullptr)) {
+    renderer_->set_hidden(state_.hidden ? *state_.hidden : std::vector<bool>());
+    discontinuous_ = true;
+  }
+  if (state_.selected != (same_scene ? before.selected : nullptr)) {
+    renderer_->set_selected(state_.selected ? std::span(*state_.selected)
+                                            : std::span<const std::uint32_t>());
+  }
   if (state_.environment != (same_scene ? before.environment : nullptr)) {
     renderer_->set_environment(state_.environment);
     discontinuous_ = true;

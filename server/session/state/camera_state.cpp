@@ -46,11 +46,11 @@ glm::vec3 in_range(const glm::vec3& point) {
   return glm::clamp(point, -protocol::max_coordinate, protocol::max_coordinate);
 }
 
-/// A camera that shows all of the scene, or as much of a huge one as camera.set can show, too.
-scene::Camera fitting_camera(const scene::Scene& scene, float vertical_fov, float aspect) {
+/// A camera that shows all of a box, or as much of a huge one as camera.set can show, too.
+scene::Camera fitting_camera(const scene::Bounds& bounds, float vertical_fov, float aspect) {
   const float fov =
       std::clamp(vertical_fov, protocol::min_field_of_view, protocol::max_field_of_view);
-  scene::Camera camera = scene::fit_camera(scene.bounds, fov, aspect);
+  scene::Camera camera = scene::fit_camera(bounds, fov, aspect);
   if (is_in_range(camera)) return camera;
   const glm::vec3 away =
       glm::vec3(glm::normalize(glm::dvec3(camera.eye) - glm::dvec3(camera.target)) *
@@ -123,7 +123,7 @@ void CameraState::copy_from(const CameraState& other) {
 void CameraState::reset(const scene::Scene& scene, float aspect) {
   ++discontinuities_;
   if (scene.cameras.empty()) {
-    camera_ = fitting_camera(scene, scene::Camera().vertical_fov, aspect);
+    camera_ = fitting_camera(scene.bounds, scene::Camera().vertical_fov, aspect);
     name_.reset();
   } else {
     camera_ = scene.cameras.front();
@@ -164,9 +164,9 @@ Result<void> CameraState::orbit(const protocol::CameraOrbit& request, const std:
   return {};
 }
 
-void CameraState::fit(const scene::Scene& scene, float aspect) {
+void CameraState::fit(const scene::Bounds& bounds, float aspect) {
   ++discontinuities_;
-  move(fitting_camera(scene, camera_.vertical_fov, aspect), std::nullopt);
+  move(fitting_camera(bounds, camera_.vertical_fov, aspect), std::nullopt);
 }
 
 void CameraState::move(const scene::Camera& camera, std::optional<std::string> name) {

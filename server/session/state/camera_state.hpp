@@ -27,8 +27,8 @@ class CameraState {
   protocol::Result<void> set(const protocol::CameraSet& request, const scene::Scene& scene,
                              const std::string& by);
   protocol::Result<void> orbit(const protocol::CameraOrbit& request, const std::string& by);
-  /// Shows the whole scene from the same direction.
-  void fit(const scene::Scene& scene, float aspect);
+  /// Shows all of `bounds`.
+  void fit(const scene::Bounds& bounds, float aspect);
   void remove_viewer(const std::string& viewer) { input_seqs_.erase(viewer); }
 
   const scene::Camera& camera() const { return camera_; }

@@ -27,9 +27,11 @@ struct RenderState {
   Clock::time_point changed_at;
   std::shared_ptr<const render::SceneResources> resources;
   std::shared_ptr<const scene::Scene> scene;
-  std::shared_ptr<const SceneEdits::Lights> lights;           // null: the scene's own
-  std::shared_ptr<const SceneEdits::Materials> materials;     // null: the scene's own
-  std::shared_ptr<const render::LitEnvironment> environment;  // null: the scene's own
+  std::shared_ptr<const SceneEdits::Lights> lights;            // null: the scene's own
+  std::shared_ptr<const SceneEdits::Materials> materials;      // null: the scene's own
+  std::shared_ptr<const std::vector<bool>> hidden;             // by instance; null: none
+  std::shared_ptr<const std::vector<std::uint32_t>> selected;  // instances; null: none
+  std::shared_ptr<const render::LitEnvironment> environment;   // null: the scene's own
   scene::Camera camera;
   std::uint64_t camera_moves = 0;
   std::uint64_t discontinuities = 0;  // jumps of the camera, and changes of the scene

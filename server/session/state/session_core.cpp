@@ -42,16 +42,20 @@ void SessionCore::follow(const SessionCore& leader) {
   const std::lock_guard lock(mutex);
   const AnimationClock clock = timeline.clock();
   timeline.follow(leader.timeline);
-  const bool same =
-      resources == leader.resources && scene == leader.scene && settings == leader.settings &&
-      environment == leader.environment && edits.device_lights() == leader.edits.device_lights() &&
-      edits.device_materials() == leader.edits.device_materials() && clock == timeline.clock();
+  const bool same = resources == leader.resources && scene == leader.scene &&
+                    settings == leader.settings && environment == leader.environment &&
+                    edits.device_lights() == leader.edits.device_lights() &&
+                    edits.device_materials() == leader.edits.device_materials() &&
+                    nodes.hidden_instances() == leader.nodes.hidden_instances() &&
+                    nodes.isolated() == leader.nodes.isolated() &&
+                    nodes.selected() == leader.nodes.selected() && clock == timeline.clock();
   if (same) return;
   if (scene != leader.scene) camera.copy_from(leader.camera);
   scene = leader.scene;
   resources = leader.resources;
   scene_info = leader.scene_info;
   edits = leader.edits;
+  nodes = leader.nodes;
   environment = leader.environment;
   environment_name = leader.environment_name;
   settings = leader.settings;
@@ -67,6 +71,8 @@ RenderState SessionCore::snapshot() const {
           .scene = scene,
           .lights = edits.device_lights(),
           .materials = edits.device_materials(),
+          .hidden = nodes.hidden_instances(),
+          .selected = nodes.selected_instances(),
           .environment = environment,
           .camera = camera.camera(),
           .camera_moves = camera.moves(),

@@ -13,6 +13,7 @@
 #include "protocol/messages/messages.hpp"
 #include "protocol/result.hpp"
 #include "scene/scene.hpp"
+#include "session/nodes/node_state.hpp"
 #include "session/state/camera_state.hpp"
 #include "session/state/capture_queue.hpp"
 #include "session/state/reference_mode.hpp"
@@ -104,6 +105,7 @@ struct SessionCore {
   std::shared_ptr<const render::SceneResources> resources;
   protocol::SceneInfo scene_info;
   SceneEdits edits;
+  NodeState nodes;
   std::optional<std::string> environment_name;  // with `environment`: null where the scene's own
   std::shared_ptr<const render::LitEnvironment> environment;
   CameraState camera;

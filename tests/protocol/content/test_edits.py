@@ -199,7 +199,7 @@ class Edits(ServerTestCase):
                                places=3)
         sky = self.server.call("scene.pick", {"x": 0, "y": 0})
         self.assertEqual(sky, {"hit": False, "position": None, "normal": None, "distance": None,
-                               "object": None, "material": None})
+                               "object": None, "material": None, "node": None})
         self.assert_error(self.server.ask("scene.pick", {"x": 1.5, "y": 0}), -32602, path="x")
         self.assert_error(self.server.ask("scene.pick", {"x": 0.5}), -32602, path="y")
 

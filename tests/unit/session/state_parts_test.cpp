@@ -54,7 +54,7 @@ TEST_F(CameraStateTest, JumpsAreDiscontinuitiesAndMovesAreNot) {
   ASSERT_TRUE(camera_.orbit({.yaw = 10.0f}, ""));
   EXPECT_EQ(camera_.discontinuities(), before);
   ASSERT_TRUE(camera_.set({.name = "front"}, scene_, ""));
-  camera_.fit(scene_, 1.0f);
+  camera_.fit(scene_.bounds, 1.0f);
   camera_.reset(scene_, 1.0f);
   EXPECT_EQ(camera_.discontinuities(), before + 3);
 }
@@ -78,7 +78,7 @@ TEST(FittedCamera, IsWithinTheRangeOfCameraSet) {
     CameraState camera;
     camera.reset(scene, 1.5f);
     EXPECT_TRUE(is_settable(camera.camera())) << from.x;
-    camera.fit(scene, 1.5f);
+    camera.fit(scene.bounds, 1.5f);
     EXPECT_TRUE(is_settable(camera.camera())) << from.x;
     const protocol::Camera message = camera.message(1);
     EXPECT_TRUE(camera.set({.eye = message.eye, .target = message.target}, scene, "")) << from.x;
@@ -91,7 +91,7 @@ TEST(FittedCamera, BringsTheFieldOfViewOfASceneCameraIntoRange) {
     scene.cameras[0].vertical_fov = of_scene;
     CameraState camera;
     camera.reset(scene, 1.0f);
-    camera.fit(scene, 1.0f);
+    camera.fit(scene.bounds, 1.0f);
     EXPECT_FLOAT_EQ(camera.camera().vertical_fov, fitted);
     EXPECT_TRUE(is_settable(camera.camera()));
   }
