@@ -46,7 +46,7 @@ render::Frame rendered_room(RendererRig& rig, protocol::ReferenceUse reference) 
   protocol::Settings settings;
   settings.reference.use = reference;
   rig.apply(settings);
-  return rig.accumulate(24);
+  return rig.accumulate(8);
 }
 
 RendererRig rig_of(std::shared_ptr<const scene::Scene> scene, const std::string& tracer) {
@@ -107,7 +107,7 @@ TEST(Selection, IsOutlinedWithoutSteps) {
   EXPECT_TRUE(rig.renderer.needs_frame());
   const render::Frame outlined = rig.renderer.render();
   save_image("selection", outlined);
-  EXPECT_GT(outlined.samples, 24u) << "the mean of the samples goes on";
+  EXPECT_GT(outlined.samples, 8u) << "the mean of the samples goes on";
   // The sphere is 46 pixels wide: a line of two pixels around it covers about 300.
   const int changed = differing_pixels(plain, outlined, 24),
             strong = differing_pixels(plain, outlined, 80);

@@ -120,6 +120,7 @@ function main(): void {
       divider,
       picker: createPicker(canvas, find("mark")),
     },
+    selection: createPicker(canvas, find("mark")),
     upload: (file) => void uploadFile(viewer, file, toasts),
     help: help.open,
     fullscreen: document.fullscreenEnabled ? toggleFullscreen : null,

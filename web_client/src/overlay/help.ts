@@ -10,6 +10,7 @@ const entries: [title: string, rows: [keys: string[], meaning: string][]][] = [
       [["Right drag"], "Pan (also middle drag or Shift + drag)"],
       [["Wheel"], "Zoom to pointer"],
       [["Double click"], "Focus on the point under the pointer"],
+      [["Click"], "Select an object, while Objects is unfolded (Shift: add)"],
     ],
   ],
   [
@@ -30,6 +31,7 @@ const entries: [title: string, rows: [keys: string[], meaning: string][]][] = [
       [["F"], "Fit the scene into view"],
       [["B"], "Bookmark this view"],
       [["Ctrl Z"], "Undo the last change (Ctrl Shift Z: redo)"],
+      [["V"], "Hide or show an object (in the list of objects; Enter: select)"],
       [["H"], "Hide or show the panel"],
       [["Enter"], "Fullscreen (while the view has the focus)"],
       [["?"], "Show this help"],

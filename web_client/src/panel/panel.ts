@@ -4,6 +4,7 @@ import { preferences } from "../common/preferences.ts";
 import type { Signal } from "../common/signal.ts";
 
 import { type Viewer, bufferSetting } from "../session/viewer.ts";
+import type { PointPicker } from "../view/picker.ts";
 import { button, element, icon } from "../widgets/element.ts";
 import { type MenuItem, createMenu } from "../widgets/menu.ts";
 import { createTabs } from "../widgets/tabs.ts";
@@ -18,6 +19,8 @@ import { createUndoButtons } from "./undo_buttons.ts";
 interface PanelActions {
   output: MenuItem[];
   inspect: InspectParts;
+  /** Clicks that select objects. */
+  selection: PointPicker;
   /** Uploads a scene file and loads it. */
   upload(file: File): void;
   help(): void;
@@ -36,7 +39,7 @@ const narrow = matchMedia("(max-width: 640px)");
 export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActions): Panel {
   const stream = createStreamSection(viewer);
   const tabs = createTabs("Panel", [
-    { id: "scene", label: "Scene", icon: "scene", body: createSceneTab(viewer, actions.upload) },
+    { id: "scene", label: "Scene", icon: "scene", body: createSceneTab(viewer, actions.selection, actions.upload) },
     {
       id: "settings",
       label: "Advanced",

@@ -58,10 +58,10 @@ export class CameraMoves {
     });
   }
 
-  /** Fits the scene into the view; `place` adapts the pose to what covers the view. */
-  async fit(): Promise<void> {
+  /** Fits the scene, or these nodes of it, into the view; `place` adapts the pose to what covers the view. */
+  async fit(nodes?: number[]): Promise<void> {
     await this.host.attempt(async () => {
-      const camera = await this.host.rpc.request("camera.fit");
+      const camera = await this.host.rpc.request("camera.fit", nodes ? { nodes } : {});
       const placed = this.place(camera);
       this.remember(placed);
       this.host.camera.set(camera);

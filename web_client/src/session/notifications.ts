@@ -9,6 +9,7 @@ import type {
 } from "heliograph/messages.ts";
 import type { CameraPose } from "../common/camera_pose.ts";
 import type { Signal } from "../common/signal.ts";
+import type { NodeStore } from "./node_store.ts";
 import type { SceneLoading } from "./scene_loading.ts";
 import type { SceneParts } from "./scene_parts.ts";
 import type { SettingsStore } from "./settings_store.ts";
@@ -18,6 +19,7 @@ import type { ViewRestore } from "./view_restore.ts";
 interface Targets {
   settings: SettingsStore;
   parts: SceneParts;
+  nodes: NodeStore;
   loading: SceneLoading;
   history: UndoHistory;
   stats: Signal<FrameStats | null>;
@@ -52,6 +54,10 @@ export function receiveNotification(targets: Targets, method: string, params: un
     case "materials.changed":
     case "environment.changed":
       targets.parts.notified(method, params);
+      break;
+    case "nodes.changed":
+    case "selection.changed":
+      targets.nodes.notified(method, params);
       break;
     case "scene.progress":
       targets.loading.progressed(params as Notifications["scene.progress"]);

@@ -38,7 +38,14 @@ export async function restoreView(host: RestoreHost, state: ViewState): Promise<
   };
   if (!(await run([restoreScene, restoreSettings]))) return false;
   if (host.ownsSession() && !(await hasScene(host))) return host.isCurrent();
-  return run([restoreEnvironment, restoreLights, restoreMaterials, restoreClip, restoreCamera]);
+  return run([
+    restoreEnvironment,
+    restoreLights,
+    restoreMaterials,
+    restoreNodes,
+    restoreClip,
+    restoreCamera,
+  ]);
 }
 
 type Step = (host: RestoreHost, state: ViewState) => Promise<void>;
@@ -141,6 +148,14 @@ async function restoreMaterials(host: RestoreHost, { materials }: ViewState): Pr
   await restoreParts(host, patchesTowards(current, materials), (material, patch) =>
     host.rpc.request("materials.patch", { material, patch }),
   );
+}
+
+async function restoreNodes({ rpc, supports }: RestoreHost, { nodes }: ViewState): Promise<void> {
+  if (!nodes || !supports("nodes.patch")) return;
+  const { hidden, isolated, selected } = nodes;
+  if (hidden.length > 0) await rpc.request("nodes.patch", { nodes: hidden, patch: { visible: false } });
+  if (isolated.length > 0) await rpc.request("nodes.isolate", { nodes: isolated });
+  if (selected.length > 0) await rpc.request("selection.set", { nodes: selected });
 }
 
 /** A light or material that the server rejects does not stop the others. */

@@ -4,7 +4,7 @@ import type { JsonObject, JsonValue, Vector3 } from "heliograph/json.ts";
 import { isObject } from "heliograph/settings_tree.ts";
 import type { CameraPose } from "../common/camera_pose.ts";
 import { checkedEdits, maxEdits } from "./scene_edits.ts";
-import type { ClipState, ViewState } from "./view_state.ts";
+import type { ClipState, NodesShown, ViewState } from "./view_state.ts";
 
 const key = "view";
 /** A link to a scene as it is. */
@@ -13,6 +13,9 @@ const digits = 6;
 
 /** Mail programs and messengers truncate longer links. */
 const maxLinkLength = 8000;
+
+/** Hidden, isolated and selected nodes of a link. */
+const maxNodes = 256;
 
 interface Link {
   href: string;
@@ -23,6 +26,7 @@ interface Link {
 /** The page's URL with a view in its fragment, of at most `maxLinkLength` characters. */
 export function linkTo(page: string, state: ViewState): Link {
   const [lights, materials] = [state.lights, state.materials];
+  if (!fitsIntoLink(state.nodes)) return linkTo(page, { ...state, nodes: undefined });
   const [full, lit, bare] = [
     state,
     { ...state, materials: undefined },
@@ -78,10 +82,29 @@ function checked(value: unknown): ViewState | null {
   if (environment === null || typeof environment === "string") state.environment = environment;
   if (lights) state.lights = lights;
   if (materials) state.materials = materials;
+  const nodes = checkedNodes(value.nodes);
+  if (nodes) state.nodes = nodes;
   if (isObject(settings)) state.settings = settings;
   if (clip === null || isClip(clip)) state.clip = clip;
   if (isCamera(camera)) state.camera = camera;
   return state;
+}
+
+function fitsIntoLink(nodes: NodesShown | undefined): boolean {
+  if (!nodes) return true;
+  return nodes.hidden.length + nodes.isolated.length + nodes.selected.length <= maxNodes;
+}
+
+function checkedNodes(value: JsonValue | undefined): NodesShown | undefined {
+  if (!isObject(value)) return undefined;
+  const { hidden, isolated, selected } = value;
+  if (![hidden, isolated, selected].every(isIdList)) return undefined;
+  const nodes = { hidden, isolated, selected } as unknown as NodesShown;
+  return fitsIntoLink(nodes) ? nodes : undefined;
+}
+
+function isIdList(value: unknown): value is number[] {
+  return Array.isArray(value) && value.every((id) => Number.isSafeInteger(id) && id >= 0);
 }
 
 function isClip(value: unknown): value is ClipState {

@@ -14,6 +14,13 @@ export interface ClipState {
   playing: boolean;
 }
 
+/** Ids of nodes. */
+export interface NodesShown {
+  hidden: number[];
+  isolated: number[];
+  selected: number[];
+}
+
 /** Members that are left out keep the server's values. */
 export interface ViewState {
   scene?: string;
@@ -25,6 +32,7 @@ export interface ViewState {
   /** Differences from the scene's file. */
   lights?: Edits;
   materials?: Edits;
+  nodes?: NodesShown;
   /** Differences from the defaults. */
   settings?: JsonObject;
   /** null: the scene is in its rest pose. */

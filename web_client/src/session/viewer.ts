@@ -24,6 +24,7 @@ import { CameraMoves } from "./camera_moves.ts";
 import type { FileError } from "./file_errors.ts";
 import { FrameQueries } from "./frame_queries.ts";
 import { Membership } from "./membership.ts";
+import { NodeStore } from "./node_store.ts";
 import { receiveNotification } from "./notifications.ts";
 import { OwnSession } from "./own_session.ts";
 import { SceneLoading } from "./scene_loading.ts";
@@ -46,6 +47,7 @@ export class Viewer {
   readonly settings: SettingsStore;
   readonly capabilities: ServerCapabilities;
   readonly parts: SceneParts;
+  readonly nodes: NodeStore;
   readonly stream: StreamRequests;
   readonly queries: FrameQueries;
   readonly own: OwnSession;
@@ -159,6 +161,7 @@ export class Viewer {
       loading: this.loading,
       report: (error) => this.report(error),
     });
+    this.nodes = new NodeStore(this);
     this.queries = new FrameQueries({
       rpc: this.rpc,
       capabilities: this.capabilities,
@@ -241,6 +244,7 @@ export class Viewer {
       variant: scene?.variant ?? undefined,
       environment: this.parts.environment.value?.current,
       ...this.parts.edits(),
+      nodes: this.nodes.shown(),
       settings: changesOf(this.settings.schema.value, this.settings.tree.value),
       clip: clipState(this.animation.value, this.animationReadAt),
       camera: this.camera.value ?? undefined,

@@ -2,8 +2,10 @@
 
 import type { SceneInfo } from "heliograph/messages.ts";
 import type { Viewer } from "../../session/viewer.ts";
+import type { PointPicker } from "../../view/picker.ts";
 import { element, icon, setText } from "../../widgets/element.ts";
 import { requiresControl } from "../../widgets/requires_control.ts";
+import { createNodeSection } from "../nodes/node_section.ts";
 import { mountSettings } from "../settings/settings_sections.ts";
 import { createCameraFields } from "./camera_fields.ts";
 import { createEnvironmentField } from "./environment_field.ts";
@@ -16,7 +18,11 @@ import { createScenePicker } from "./scene_picker.ts";
 /** Groups of settings that are shown here instead of in the Settings tab. */
 export const appearanceGroups = ["exposure", "tone_map", "environment", "background"];
 
-export function createSceneTab(viewer: Viewer, upload: (file: File) => void): HTMLElement {
+export function createSceneTab(
+  viewer: Viewer,
+  picker: PointPicker,
+  upload: (file: File) => void,
+): HTMLElement {
   const facts = element("p", { class: "facts" });
   const warnings = element("details", { class: "warnings", hidden: true });
   viewer.scene.watch((scene) => {
@@ -38,6 +44,7 @@ export function createSceneTab(viewer: Viewer, upload: (file: File) => void): HT
       ...createCameraFields(viewer),
       ...createEnvironmentField(viewer, upload),
     ),
+    createNodeSection(viewer, picker),
     createLightSection(viewer.parts),
     appearance,
     createMaterialSection(viewer.parts).node,
