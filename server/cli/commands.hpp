@@ -13,6 +13,7 @@ int run(const CompareOptions& options);
 int run(const DevicesOptions& options);
 int run(const SchemaOptions& options);
 int run(const HealthOptions& options);
+int run(const McpOptions& options);
 int run(const ImportOptions& options);
 inline int run(const Finished& finished) {
   return finished.exit_code;

@@ -101,6 +101,18 @@ void add_settings_options(CLI::App& command, SettingsOptions& options) {
       ->group("Frames");
 }
 
+void add_log_options(CLI::App& command, LogOptions& options) {
+  constexpr const char* group = "Log";
+  command.add_option("--log-format", options.format, "Format of the log on stderr")
+      ->check(one_of({"text", "json"}))
+      ->capture_default_str()
+      ->group(group);
+  command.add_option("--log-level", options.level, "Minimum level of logged messages")
+      ->check(one_of({"debug", "info", "warning", "error", "off"}))
+      ->capture_default_str()
+      ->group(group);
+}
+
 void add_environment_option(CLI::App& command, std::string& environment) {
   command
       .add_option("--environment", environment,

@@ -22,6 +22,7 @@ void add_settings_options(CLI::App& command, SettingsOptions& options);
 CLI::Validator preset_name();
 /// What an image shows and how good it is.
 void add_view_options(CLI::App& command, RenderOptions& options);
+void add_log_options(CLI::App& command, LogOptions& options);
 void add_environment_option(CLI::App& command, std::string& environment);
 /// Limits beyond which a scene file is refused.
 void add_limit_options(CLI::App& command, scene::ImportLimits& limits);
@@ -45,6 +46,8 @@ void add_size_options(CLI::App& command, Number& width, Number& height,
 
 /// Adds the command "serve".
 CLI::App* add_serve(CLI::App& app, ServeOptions& options);
+/// Adds the command "mcp".
+CLI::App* add_mcp(CLI::App& app, McpOptions& options);
 /// Adds the command "render".
 CLI::App* add_render(CLI::App& app, RenderOptions& options);
 /// Adds the command of the helper that import_arguments() start, which no help shows.

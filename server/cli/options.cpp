@@ -208,6 +208,7 @@ Command parse(const std::vector<std::string>& given) {
   DevicesOptions devices;
   SchemaOptions schema;
   HealthOptions health;
+  McpOptions mcp;
   ImportOptions import;
   const CLI::App* serve_command = add_serve(app, serve);
   const CLI::App* render_command = add_render(app, render);
@@ -215,6 +216,7 @@ Command parse(const std::vector<std::string>& given) {
   const CLI::App* devices_command = add_devices(app, devices);
   const CLI::App* schema_command = add_schema(app, schema);
   const CLI::App* health_command = add_health(app, health);
+  const CLI::App* mcp_command = add_mcp(app, mcp);
   const CLI::App* import_command = add_import(app, import);
   for (CLI::App* command : app.get_subcommands({})) name_variables(*command);
 
@@ -243,6 +245,7 @@ Command parse(const std::vector<std::string>& given) {
   if (*compare_command) return compare;
   if (*devices_command) return devices;
   if (*schema_command) return schema;
+  if (*mcp_command) return mcp;
   if (*import_command) return import;
   if (*health_command) {
     return health.url.empty() ? with_url_of_server(health, config_file) : Command(health);

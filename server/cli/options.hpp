@@ -124,6 +124,18 @@ struct ImportOptions {
   std::uint32_t seconds = 0;  // of one import
 };
 
+struct McpOptions {
+  std::string scene;
+  std::vector<std::filesystem::path> scene_roots;
+  std::string environment;
+  std::optional<std::uint32_t> width;
+  std::optional<std::uint32_t> height;
+  scene::ImportLimits limits;
+  SettingsOptions settings;
+  DeviceOptions device;
+  LogOptions log;
+};
+
 /// The result of a command line that needs no command: help was printed, or the arguments are
 /// wrong.
 struct Finished {
@@ -131,7 +143,7 @@ struct Finished {
 };
 
 using Command = std::variant<Finished, ServeOptions, RenderOptions, CompareOptions, DevicesOptions,
-                             SchemaOptions, HealthOptions, ImportOptions>;
+                             SchemaOptions, HealthOptions, ImportOptions, McpOptions>;
 
 /// Reads the command line, HELIOGRAPH_* variables and the file of --config, in this order of
 /// precedence. Help is printed to stdout, errors to stderr with the nearest known name.

@@ -219,18 +219,6 @@ void add_job_options(CLI::App& command, ServeOptions& options) {
       ->group(group);
 }
 
-void add_log_options(CLI::App& command, LogOptions& options) {
-  constexpr const char* group = "Log";
-  command.add_option("--log-format", options.format, "Format of the log on stderr")
-      ->check(one_of({"text", "json"}))
-      ->capture_default_str()
-      ->group(group);
-  command.add_option("--log-level", options.level, "Minimum level of logged messages")
-      ->check(one_of({"debug", "info", "warning", "error", "off"}))
-      ->capture_default_str()
-      ->group(group);
-}
-
 }  // namespace
 
 CLI::App* add_serve(CLI::App& app, ServeOptions& options) {
