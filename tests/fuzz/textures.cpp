@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "scene/image/image_decoder.hpp"
 #include "scene/image/ktx2/ktx2_decoder.hpp"
 #include "scene/image/mipmaps.hpp"
 #include "scene/import_error.hpp"
@@ -48,14 +49,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::span<const std::uint8_t> file(data, size);
   if (!scene::is_ktx2(file)) return 0;
   try {
-    const scene::ImageSize found = scene::probe_ktx2(file);
+    const scene::ImageSize found = scene::probe_image(file);
     if (std::uint64_t{found.width} * found.height > most_pixels) return 0;
     scene::Image image{.width = found.width,
                        .height = found.height,
                        .levels = scene::mip_level_count(found.width, found.height)};
     image.pixels.resize(scene::mip_chain_bytes(found.width, found.height));
     const std::size_t first_level = std::size_t{4} * found.width * found.height;
-    scene::decode_ktx2(file, found, std::span(image.pixels).first(first_level));
+    scene::decode_image(file, found, std::span(image.pixels).first(first_level));
     scene::fill_mip_chain(image);
   } catch (const scene::ImportError&) {
   }

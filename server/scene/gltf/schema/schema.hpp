@@ -83,50 +83,71 @@ struct Member {
   std::string_view if_absent = {};
   std::string_view extra_item = {};  // appended to the array that tinygltf is given
 
+  // The same member, changed. Without lambdas, of which clang 14 makes no constant expressions.
   constexpr Member needed() const {
-    return with([](Member& m) { m.required = true; });
+    Member m = *this;
+    m.required = true;
+    return m;
   }
   constexpr Member range(double from, double to) const {
-    return with([=](Member& m) { m.minimum = from, m.maximum = to; });
+    Member m = *this;
+    m.minimum = from;
+    m.maximum = to;
+    return m;
   }
   constexpr Member at_least(double from) const { return range(from, unlimited); }
   constexpr Member above(double limit) const {
-    return with([=](Member& m) { m.minimum = limit, m.above_minimum = true; });
+    Member m = *this;
+    m.minimum = limit;
+    m.above_minimum = true;
+    return m;
   }
   constexpr Member above_zero() const {
-    return with([](Member& m) { m.above_minimum = true; });
+    Member m = *this;
+    m.above_minimum = true;
+    return m;
   }
   constexpr Member clamp(double from, double to) const {
-    return range(from, to).with([](Member& m) { m.clamped_below = m.clamped_above = true; });
+    Member m = range(from, to);
+    m.clamped_below = m.clamped_above = true;
+    return m;
   }
   constexpr Member clamp_above(double to) const {
-    return with([=](Member& m) { m.maximum = to, m.clamped_above = true; });
+    Member m = *this;
+    m.maximum = to;
+    m.clamped_above = true;
+    return m;
   }
   constexpr Member integers(std::uint64_t from, std::uint64_t to) const {
-    return with([=](Member& m) { m.least = from, m.most = to; });
+    Member m = *this;
+    m.least = from;
+    m.most = to;
+    return m;
   }
   constexpr Member items(std::uint32_t from) const {
-    return with([=](Member& m) { m.least_items = from; });
+    Member m = *this;
+    m.least_items = from;
+    return m;
   }
   constexpr Member one_of(const Choices& list) const {
-    return with([&](Member& m) { m.choices = &list; });
+    Member m = *this;
+    m.choices = &list;
+    return m;
   }
   constexpr Member otherwise(std::string_view json) const {
-    return with([=](Member& m) { m.if_absent = json; });
+    Member m = *this;
+    m.if_absent = json;
+    return m;
   }
   constexpr Member and_also(std::string_view json) const {
-    return with([=](Member& m) { m.extra_item = json; });
+    Member m = *this;
+    m.extra_item = json;
+    return m;
   }
   constexpr Member lenient() const {
-    return with([](Member& m) { m.ignored_unless_object = true; });
-  }
-
- private:
-  template <typename Change>
-  constexpr Member with(const Change& change) const {
-    Member result = *this;
-    change(result);
-    return result;
+    Member m = *this;
+    m.ignored_unless_object = true;
+    return m;
   }
 };
 
