@@ -30,8 +30,9 @@ class DispatcherTest : public testing::Test {
         });
     dispatcher.add<methods::camera_get>(
         [](Empty, const CallContext&, auto) { throw std::runtime_error("secret detail"); });
-    dispatcher.add<methods::camera_fit>(
-        [](Empty, const CallContext&, auto done) { done(error::not_ready("no scene is loaded")); });
+    dispatcher.add<methods::camera_fit>([](const CameraFit&, const CallContext&, auto done) {
+      done(error::not_ready("no scene is loaded"));
+    });
     dispatcher.add<methods::frame_buffers>([this](Empty, const CallContext&, auto done) {
       ++buffer_calls;
       done(FrameBuffers{});
