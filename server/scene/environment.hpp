@@ -14,6 +14,7 @@ struct Environment {
   std::uint32_t width = 0;
   std::uint32_t height = 0;
   std::vector<glm::vec3> radiance;
+  bool is_studio = false;  // made by studio_environment()
 };
 
 /// Of a file.

@@ -103,7 +103,7 @@ std::vector<glm::vec3> studio_radiance(int width, int height) {
 
 Environment studio_environment() {
   constexpr std::uint32_t width = 512, height = 256;
-  return {width, height, studio_radiance(width, height)};
+  return {width, height, studio_radiance(width, height), true};
 }
 
 }  // namespace heliograph::scene

@@ -12,7 +12,7 @@ layout(set = 1, binding = 2, std430) writeonly buffer Report { ExposureState rep
 layout(push_constant) uniform Constants {
   float seconds;     // since the frame before
   float adaptation;  // seconds in which 1 - 1/e of a change is followed
-  uint automatic;
+  float reach;       // stops away from manual exposure, at most; 0: it is manual
 };
 
 /// Mean log2 luminance of the metered pixels; false where there are none.
@@ -38,12 +38,13 @@ bool metered(out float mean) {
 void main() {
   if (gl_GlobalInvocationID.x > 0u) return;
   ExposureState now = ExposureState(frame.exposure_factor, 0.0, 0.0, 0.0);
-  if (automatic != 0u) {
+  if (reach > 0.0) {
     bool first = frame.history_invalid != 0u;
     float mean;
     now.target = first ? 0.0 : state.target;
     if (metered(mean)) now.target = log2(exposure_middle_grey) - mean;
     now.target = clamp(now.target, exposure_lowest, exposure_highest);
+    now.target = clamp(now.target, -reach, reach);
     now.stops = now.target;
     if (!first && adaptation > 0.0) {
       now.stops = mix(now.target, state.stops, exp(-seconds / adaptation));

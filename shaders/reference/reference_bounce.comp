@@ -18,7 +18,9 @@ layout(set = 1, binding = 6, std430) writeonly buffer SkyRays { Ray sky_rays[]; 
 layout(set = 1, binding = 7, std430) writeonly buffer EmissiveCount { RayCount emissive_count; };
 layout(set = 1, binding = 8, std430) writeonly buffer EmissiveRays { Ray emissive_rays[]; };
 layout(set = 1, binding = 9, rgba32f) uniform image2D reference;
+layout(set = 1, binding = 10, std430) readonly buffer Shade { float ground_shade[]; };
 layout(push_constant) uniform Constants { ReferenceConstants constants; };
+#include "lib/lighting/ground.glsl"
 
 const uint first_roulette = 3u;       // bounce after which dim paths end at random
 const float least_roughness = 0.1;  // whose lobe is wide enough to be met by chance
@@ -211,6 +213,7 @@ void main() {
     rays[index] = no_ray();
     if (hit.instance == hit_none) {
       radiance = environment_at_miss(path, ray.direction);
+      if (path.bounces == 0u) radiance *= ground_factor(ray.origin, ray.direction);
     } else {
       RayCone cone = RayCone(path.cone_width, path.cone_spread);
       HitSurface s = hit_surface(hit, ray.direction, cone_width(cone, hit.t));

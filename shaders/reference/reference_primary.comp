@@ -16,7 +16,9 @@ layout(set = 1, binding = 6, std430) writeonly buffer AmbientRays { Ray ambient_
 layout(set = 1, binding = 7, std430) writeonly buffer MirrorCount { RayCount mirror_count; };
 layout(set = 1, binding = 8, std430) writeonly buffer MirrorRays { Ray mirror_rays[]; };
 layout(set = 1, binding = 9, rgba32f) uniform image2D reference;
+layout(set = 1, binding = 10, std430) readonly buffer Shade { float ground_shade[]; };
 layout(push_constant) uniform Constants { ReferenceConstants constants; };
+#include "lib/lighting/ground.glsl"
 
 Ray shadow_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
   if (!enabled(frame_direct)) return no_ray();
@@ -60,7 +62,7 @@ void main() {
   vec3 radiance = vec3(0.0);
   ReferencePath path = paths[index];
   if (hit.instance == hit_none) {
-    radiance = path.throughput * background(ray.direction);
+    radiance = path.throughput * background(ray.direction) * ground_factor(ray.origin, ray.direction);
   } else {
     RayCone cone = RayCone(path.cone_width, path.cone_spread);
     HitSurface s = hit_surface(hit, ray.direction, cone_width(cone, hit.t));

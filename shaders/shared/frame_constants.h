@@ -55,6 +55,8 @@ struct FrameConstants {
   float sun_radius;            // tangent of its angular radius, -1: there is none
   vec3 sun_irradiance;         // on a surface facing it
   float background_intensity;  // factor on the map of what is seen behind the scene
+
+  vec4 ground;  // middle of the plane that catches shadows, metres; half its side, 0: there is none
 };
 
 SHARED_END

@@ -8,6 +8,7 @@
 #include "render/passes/denoise/denoise_visibility.hpp"
 #include "render/passes/gbuffer/draw_gbuffer.hpp"
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
+#include "render/passes/ground/ground.hpp"
 #include "render/passes/indirect/trace_indirect.hpp"
 #include "render/passes/post/accumulate.hpp"
 #include "render/passes/post/filter_mean.hpp"
@@ -89,8 +90,8 @@ FrameOutputs show(gpu::FramePlan& plan, const FrameInputs& in, const gpu::Histor
 }
 
 /// The path traced ground truth alone.
-FrameOutputs declare_reference(gpu::FramePlan& plan, const FrameInputs& in) {
-  const gpu::ImageRef sample = trace_reference(plan, in);
+FrameOutputs declare_reference(gpu::FramePlan& plan, const FrameInputs& in, gpu::BufferRef ground) {
+  const gpu::ImageRef sample = trace_reference(plan, in, ground);
   const gpu::History accumulated = accumulate(plan, in, sample);
   const Exposure exposure = expose(plan, in, sample, accumulated.current);
   return show(plan, in, accumulated, exposure, sample);
@@ -101,7 +102,8 @@ FrameOutputs declare_reference(gpu::FramePlan& plan, const FrameInputs& in) {
 // The stages of the paper's section 3, in its order; the prefilter ran when the environment came.
 FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   const protocol::ReferenceUse reference = in.settings.reference.use;
-  if (reference == protocol::ReferenceUse::always) return declare_reference(plan, in);
+  const gpu::BufferRef ground = trace_ground(plan, in);
+  if (reference == protocol::ReferenceUse::always) return declare_reference(plan, in, ground);
   // The host's rasteriser finds blended surfaces together with those behind them.
   std::optional<BlendedImages> drawn;
   if (has_blends(in) && draws_gbuffer_on_host(plan, in)) drawn = declare_blended(plan);
@@ -136,6 +138,7 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   const bool traces = takes_over || (in.scene.features & shared::scene_blends) != 0;
   if (!traces) plan.finish_frames_from_here();
   const gpu::ImageRef background = draw_skybox(plan, in, gbuffer);
+  shade_ground(plan, in, gbuffer, ground, background);
   const Composed composed = compose(plan, in, gbuffer, noisy, denoised, background);
   GBuffer visible = gbuffer;
   visible.motion = blend_surfaces(plan, in, gbuffer, composed, cache, blended);
@@ -143,7 +146,7 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   std::optional<gpu::ImageRef> traced;
   if (takes_over) {
     plan.only_when([in] { return traces_reference(in); },
-                   [&] { traced = trace_reference(plan, in); });
+                   [&] { traced = trace_reference(plan, in, ground); });
   }
   const gpu::History accumulated = accumulate(plan, in, composed.noisy, traced);
   const Exposure exposure = expose(plan, in, composed.hdr, accumulated.current);

@@ -5,6 +5,7 @@
 #include <glm/gtc/constants.hpp>
 
 #include "render/resources/environment/background.hpp"
+#include "render/resources/ground_plane.hpp"
 #include "render/resources/moving_scene.hpp"
 
 namespace heliograph::render {
@@ -100,6 +101,7 @@ shared::FrameConstants make_frame_constants(const scene::Camera& camera,
   constants.tone_map_curve = static_cast<std::uint32_t>(settings.tone_map.curve);
   constants.directional_light_radius =
       diameter < 0.0f ? -1.0f : std::tan(glm::radians(0.5f * diameter));
+  constants.ground = ground_plane(settings, scene);
   add_environment(constants, scene.environment().view(settings.environment.separate_sun));
   return constants;
 }

@@ -75,20 +75,47 @@ class DepthRows {
   gpu::Buffer copy_;
 };
 
+/// The plane that catches shadows, where the background shows it.
+class GroundDepth {
+ public:
+  GroundDepth(const shared::FrameConstants& frame, VkExtent2D samples)
+      : frame_(frame), scale_(2.0f / glm::vec2(samples.width, samples.height)) {}
+
+  /// 1 / distance along the view in the middle of a sample; 0: it is not seen there.
+  float inverse(std::uint32_t x, std::uint32_t y) const {
+    const glm::vec4& ground = frame_.ground;
+    if (ground.w <= 0.0f || frame_.eye.y <= ground.y) return 0.0f;
+    const glm::vec4& u = frame_.unproject;
+    const glm::vec2 ndc = (glm::vec2(x, y) + 0.5f) * scale_ - 1.0f;
+    const glm::vec3 direction = glm::mat3(frame_.inverse_view) *
+                                glm::vec3(ndc * glm::vec2(u.x, u.y), -1.0f);  // view Z changes by 1
+    if (direction.y >= 0.0f) return 0.0f;
+    const float view_z = (ground.y - frame_.eye.y) / direction.y;
+    const glm::vec3 met = glm::vec3(frame_.eye) + view_z * direction;
+    const float from_middle = glm::length(glm::vec2(met.x - ground.x, met.z - ground.z));
+    return from_middle < ground.w ? 1.0f / view_z : 0.0f;
+  }
+
+ private:
+  const shared::FrameConstants& frame_;
+  glm::vec2 scale_;
+};
+
 /// 1 / distance for each sample; 0: the background. Where a sample shows an edge, the nearer
 /// surface counts: it keeps its shape when it is moved.
-std::vector<float> inverse_depths(const DepthRows& rows, VkExtent2D size, std::uint32_t width,
-                                  std::uint32_t reads) {
+std::vector<float> inverse_depths(const DepthRows& rows, const GroundDepth& ground, VkExtent2D size,
+                                  std::uint32_t width, std::uint32_t reads) {
   std::vector<float> inverse;
   inverse.reserve(std::size_t{size.width} * size.height);
   for (std::uint32_t y = 0; y < size.height; ++y) {
     for (std::uint32_t x = 0; x < size.width; ++x) {
       float least = INFINITY, most = 0.0f, sum = 0.0f;
+      const float behind = ground.inverse(x, y);
       for (std::uint32_t i = 0; i < reads * reads; ++i) {
         const std::uint32_t column = x * reads + i % reads;
         const float z =
             rows.view_z(y * reads + i / reads, depth_texel(column, size.width * reads, width));
-        const float value = z > 0.0f && std::isfinite(z) ? 1.0f / z : 0.0f;
+        const float value = z > 0.0f && std::isfinite(z) ? 1.0f / z : behind;
         least = std::min(least, value);
         most = std::max(most, value);
         sum += value;
@@ -111,7 +138,8 @@ std::optional<protocol::FrameDepth> Renderer::depth() const {
   const std::uint32_t width = motion->drawn.width;
   const std::uint32_t reads = std::clamp(width / size.width, 1u, most_depth_reads);
   const DepthRows rows(state_->parts.device, *motion, size.height * reads);
-  const std::vector<float> inverse = inverse_depths(rows, size, width, reads);
+  const GroundDepth ground(state_->constants, size);
+  const std::vector<float> inverse = inverse_depths(rows, ground, size, width, reads);
   const float most = std::ranges::max(inverse);
 
   protocol::FrameDepth depth{.width = static_cast<std::uint16_t>(size.width),

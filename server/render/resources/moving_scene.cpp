@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <iterator>
+#include <numbers>
 #include <utility>
 
 #include "render/resources/lights/light_table.hpp"
@@ -281,6 +282,15 @@ void MovingScene::select(std::span<const std::uint32_t> instances) {
 std::uint32_t MovingScene::features() const {
   const std::uint32_t others = resources_->features & ~shared::scene_emissive;
   return others | (emissive_.may_shine() ? shared::scene_emissive : 0u);
+}
+
+bool MovingScene::lit_by_studio_alone() const {
+  if (!environment_->source()->is_studio || !lights_.empty()) return false;
+  // Displays and indicators are no lamps: what shines counts from a fiftieth of what radiance 1
+  // sends through a sphere around the scene.
+  constexpr float pi = std::numbers::pi_v<float>, least_share = 0.02f;
+  const float radius = resources_->scene->bounds.radius();
+  return resources_->emissive_power < least_share * pi * 4.0f * pi * radius * radius;
 }
 
 const kernels::MaterialTable& MovingScene::host_materials() const {

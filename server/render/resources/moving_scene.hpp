@@ -46,6 +46,8 @@ class MovingScene {
   std::uint32_t features() const;
 
   const LitEnvironment& environment() const { return *environment_; }
+  /// Whether no light of the scene's own or of a chosen environment is beside the studio's.
+  bool lit_by_studio_alone() const;
   const kernels::MaterialTable& host_materials() const;
   /// For the rasteriser; the first call may make them. Not while a frame runs.
   const std::vector<VkDescriptorSet>& material_sets() const;

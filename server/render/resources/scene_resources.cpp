@@ -251,6 +251,7 @@ void SceneResources::upload_emissive_triangles() {
   const EmissiveTable table =
       make_emissive_table({*scene, scene->materials, emission_means, worlds});
   emissive = upload_emissive(device_, table);
+  emissive_power = table.header.power;
   if (table.header.count > 0) features |= shared::scene_emissive;
 }
 

@@ -65,6 +65,7 @@ class SceneResources {
   gpu::Buffer layers;  // shared::MaterialLayer each
   EmissionMeans emission_means;
   EmissiveBuffers emissive;               // in the default pose
+  float emissive_power = 0.0f;            // shared::EmissiveHeader::power of it
   kernels::MaterialTable host_materials;  // on devices that are processors
   std::uint32_t features = 0;             // shared::scene_*
   std::vector<Draw> draws;                // opaque first, then by material

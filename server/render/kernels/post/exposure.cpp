@@ -137,13 +137,15 @@ void exposure_meter(const ExposureMeterJob& job) {
 void exposure_adapt(const ExposureAdaptJob& job) {
   const shared::FrameConstants& frame = job.frame;
   shared::ExposureState now{frame.exposure_factor, 0.0f, 0.0f, 0.0f};
-  if (job.constants.automatic != 0) {
+  const float reach = job.constants.reach;
+  if (reach > 0.0f) {
     const bool first = frame.history_invalid != 0;
     now.target = first ? 0.0f : job.state->target;
     if (const auto mean = metered_mean({job.histogram.data, shared::exposure_bins})) {
       now.target = std::log2(shared::exposure_middle_grey) - *mean;
     }
     now.target = std::clamp(now.target, shared::exposure_lowest, shared::exposure_highest);
+    now.target = std::clamp(now.target, -reach, reach);
     now.stops = now.target;
     if (!first && job.constants.adaptation > 0.0f) {
       const float kept = std::exp(-job.constants.seconds / job.constants.adaptation);

@@ -38,7 +38,7 @@ struct ExposureAdaptBindings {
 struct ExposureAdaptConstants {
   float seconds;     // since the frame before
   float adaptation;  // seconds in which 1 - 1/e of a change is followed
-  std::uint32_t automatic;
+  float reach;       // stops away from manual exposure, at most; 0: it is manual
 };
 using ExposureAdaptJob = FrameJob<ExposureAdaptBindings, ExposureAdaptConstants>;
 void exposure_adapt(const ExposureAdaptJob& job);

@@ -6,11 +6,26 @@
 #include "render/kernels/post/exposure.hpp"
 #include "render/passes/frame_inputs.hpp"
 #include "render/passes/post/mean_weight.hpp"
+#include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 #include "shaders/shared/exposure.h"
 
 namespace heliograph::render {
 namespace {
+
+/// How many stops automatic exposure may be away from manual exposure; 0: it is manual.
+float automatic_reach(const FrameInputs& in) {
+  constexpr float unlimited = 64.0f, of_studio = 1.0f;
+  switch (in.settings.exposure.mode) {
+    case protocol::ExposureMode::manual:
+      return 0.0f;
+    case protocol::ExposureMode::automatic:
+      return unlimited;
+    case protocol::ExposureMode::by_scene:
+      break;
+  }
+  return in.moving.lit_by_studio_alone() ? of_studio : 0.0f;
+}
 
 /// Fills the histogram.
 void meter(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef hdr, gpu::ImageRef mean,
@@ -45,13 +60,14 @@ Exposure expose(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef hdr,
   const auto histogram =
       plan.buffer("exposure.histogram", shared::exposure_bins * sizeof(std::uint32_t), storage,
                   gpu::Memory::device);
-  const bool automatic = in.settings.exposure.mode == protocol::ExposureMode::automatic;
+  const float reach = automatic_reach(in);
+  const bool automatic = reach > 0.0f;
   if (automatic) meter(plan, in, hdr, mean, histogram);
   plan.pass("exposure.adapt", in.program(shaders::exposure_adapt))
       .bind<kernels::ExposureAdaptBindings>(
           {.histogram = histogram, .state = exposure.state, .report = exposure.report})
-      .constants([&clock = in.clock, &settings = in.settings.exposure, automatic] {
-        return kernels::ExposureAdaptConstants{clock.seconds, settings.adaptation, automatic};
+      .constants([&clock = in.clock, &settings = in.settings.exposure, reach] {
+        return kernels::ExposureAdaptConstants{clock.seconds, settings.adaptation, reach};
       })
       .dispatch({1, 1})
       .host(kernels::exposure_adapt, in.constants);

@@ -24,9 +24,10 @@ auto constants(const FrameInputs& in, std::uint32_t round, std::uint32_t limit) 
 /// Declares the passes of one sample in waves over all pixels.
 class Wavefront {
  public:
-  Wavefront(gpu::FramePlan& plan, const FrameInputs& in)
+  Wavefront(gpu::FramePlan& plan, const FrameInputs& in, gpu::BufferRef ground)
       : plan_(plan),
         in_(in),
+        ground_(ground),
         pixels_(plan.extent().width * plan.extent().height),
         radiance_(plan.image(reference_buffers.radiance.name, VK_FORMAT_R32G32B32A32_SFLOAT)),
         rays_(stream("reference.path")),
@@ -64,6 +65,7 @@ class Wavefront {
           .write(specular.count)
           .write(specular.rays)
           .read_write(radiance_)
+          .read(ground_)
           .constants(constants(in_, round, rounds))
           .dispatch(gpu::each_pixel());
     }
@@ -100,6 +102,7 @@ class Wavefront {
           .write(emissive.count)
           .write(emissive.rays)
           .read_write(radiance_)
+          .read(ground_)
           .constants(constants(in_, round, bounces))
           .dispatch(gpu::each_pixel());
       add(shadows_);
@@ -138,6 +141,7 @@ class Wavefront {
 
   gpu::FramePlan& plan_;
   const FrameInputs& in_;
+  gpu::BufferRef ground_;
   std::uint32_t pixels_;
   gpu::ImageRef radiance_;
   tracing::RayStream rays_;
@@ -154,9 +158,9 @@ bool traces_reference(const FrameInputs& in) {
          in.clock.hybrid_samples.has_value();
 }
 
-gpu::ImageRef trace_reference(gpu::FramePlan& plan, const FrameInputs& in) {
+gpu::ImageRef trace_reference(gpu::FramePlan& plan, const FrameInputs& in, gpu::BufferRef ground) {
   const protocol::Settings::Reference& settings = in.settings.reference;
-  Wavefront wavefront(plan, in);
+  Wavefront wavefront(plan, in, ground);
   wavefront.begin();
   if (settings.scope == protocol::ReferenceScope::full) {
     wavefront.global_illumination(static_cast<std::uint32_t>(settings.bounces));

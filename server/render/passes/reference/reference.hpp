@@ -18,7 +18,8 @@ bool traces_reference(const FrameInputs& in);
 /// One sample per pixel of the ground truth, as settings.reference asks for it: the hybrid's own
 /// light paths or full global illumination, from the camera's ray on by nothing but traced rays.
 /// Its surfaces, lights, BRDF, camera and random numbers are the hybrid's; its code is not. Linear
-/// radiance; the mean over frames converges to the integral over the pixel.
-gpu::ImageRef trace_reference(gpu::FramePlan& plan, const FrameInputs& in);
+/// radiance; the mean over frames converges to the integral over the pixel. `ground`: what
+/// trace_ground() has found, for shadows over the background.
+gpu::ImageRef trace_reference(gpu::FramePlan& plan, const FrameInputs& in, gpu::BufferRef ground);
 
 }  // namespace heliograph::render

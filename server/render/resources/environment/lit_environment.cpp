@@ -3,6 +3,8 @@
 #include <cstring>
 #include <utility>
 
+#include "shaders/shared/ground.h"
+
 namespace heliograph::render {
 namespace {
 
@@ -60,6 +62,18 @@ std::shared_ptr<const Background> LitEnvironment::background(
     last_chosen_ = chosen;
   }
   return last_background_;
+}
+
+std::shared_ptr<const UpperLight> LitEnvironment::upper_light(bool separate_sun) const {
+  const bool without = separate_sun && sun_.has_value();
+  const std::lock_guard lock(mutex_);
+  std::shared_ptr<const UpperLight>& light = upper_lights_[without];
+  if (!light) {
+    light = std::make_shared<const UpperLight>(
+        without ? render::upper_light(scene::separate_sun(*source_).sky, shared::ground_lights)
+                : render::upper_light(*source_, shared::ground_lights));
+  }
+  return light;
 }
 
 std::shared_ptr<const LitEnvironment> EnvironmentCache::get(

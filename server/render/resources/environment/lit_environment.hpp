@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <list>
 #include <memory>
 #include <mutex>
@@ -7,6 +8,7 @@
 
 #include "render/resources/environment/background.hpp"
 #include "render/resources/environment/environment_prefilter.hpp"
+#include "render/resources/environment/upper_light.hpp"
 #include "scene/environment_sun.hpp"
 
 namespace heliograph::render {
@@ -32,6 +34,8 @@ class LitEnvironment {
   /// What is seen in place of the environment; null where that is the environment as it is. The one
   /// that was asked for last is kept.
   std::shared_ptr<const Background> background(const protocol::Settings::Background& chosen) const;
+  /// What comes from above the horizon, without the sun where that is a light of its own.
+  std::shared_ptr<const UpperLight> upper_light(bool separate_sun) const;
 
  private:
   const gpu::Device& device_;
@@ -44,6 +48,7 @@ class LitEnvironment {
   mutable std::optional<EnvironmentMaps> maps_of_whole_;
   mutable protocol::Settings::Background last_chosen_;
   mutable std::shared_ptr<const Background> last_background_;
+  mutable std::array<std::shared_ptr<const UpperLight>, 2> upper_lights_;  // with the sun, without
 };
 
 /// Filters every environment once, however many scenes and sessions show it: those of the same

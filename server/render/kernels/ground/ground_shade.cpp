@@ -1,0 +1,80 @@
+#include <algorithm>
+#include <cmath>
+
+#include "render/kernels/common/tile.hpp"
+#include "render/kernels/ground/ground.hpp"
+
+namespace heliograph::render::kernels {
+namespace {
+
+constexpr int shade_side = static_cast<int>(shared::ground_side);
+
+/// shaders/lib/lighting/ground.glsl
+class GroundView {
+ public:
+  explicit GroundView(const GroundShadeJob& job)
+      : job_(job),
+        orthographic_((job.frame.flags & shared::frame_orthographic) != 0),
+        scale_(2.0f / glm::vec2(job.frame.extent)) {}
+
+  /// Of the background at a pixel.
+  float factor(int x, int y) const {
+    const shared::FrameConstants& frame = job_.frame;
+    const glm::vec2 ndc = (glm::vec2(x, y) + 0.5f) * scale_ - 1.0f;
+    const glm::vec4& u = frame.unproject;
+    const glm::vec2 slope = ndc * glm::vec2(u.x, u.y) + glm::vec2(u.z, u.w);
+    const glm::vec3 away = orthographic_ ? glm::vec3(0.0f, 0.0f, -1.0f) : glm::vec3(slope, -1.0f);
+    const glm::vec3 view_origin = orthographic_ ? glm::vec3(slope, 0.0f) : glm::vec3(0.0f);
+    const glm::vec3 origin(frame.inverse_view * glm::vec4(view_origin, 1.0f));
+    return factor(origin, glm::mat3(frame.inverse_view) * away);
+  }
+
+ private:
+  float factor(const glm::vec3& origin, const glm::vec3& direction) const {
+    const glm::vec4& ground = job_.frame.ground;
+    if (ground.w <= 0.0f || direction.y >= 0.0f || origin.y <= ground.y) return 1.0f;
+    const float t = (ground.y - origin.y) / direction.y;
+    const glm::vec3 met = origin + t * direction;
+    const glm::vec2 at = glm::vec2(met.x - ground.x, met.z - ground.z) / ground.w;
+    const float from_middle = glm::length(at);
+    if (!(from_middle < 1.0f)) return 1.0f;
+    const glm::vec2 texel = (0.5f * at + 0.5f) * static_cast<float>(shade_side) - 0.5f;
+    const glm::vec2 first = glm::floor(texel), between = texel - first;
+    const int x = static_cast<int>(first.x), y = static_cast<int>(first.y);
+    const float above = glm::mix(shade(x, y), shade(x + 1, y), between.x);
+    const float below = glm::mix(shade(x, y + 1), shade(x + 1, y + 1), between.x);
+    const float faded = glm::smoothstep(shared::ground_fade_start, 1.0f, from_middle);
+    return glm::mix(glm::mix(above, below, between.y), 1.0f, faded);
+  }
+
+  float shade(int x, int y) const {
+    return job_
+        .shade[std::clamp(y, 0, shade_side - 1) * shade_side + std::clamp(x, 0, shade_side - 1)];
+  }
+
+  const GroundShadeJob& job_;
+  bool orthographic_;
+  glm::vec2 scale_;
+};
+
+}  // namespace
+
+void ground_shade(const GroundShadeJob& job) {
+  const GroundView view(job);
+  for_each_range(job.height, 4, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      const auto row = static_cast<std::uint32_t>(y);
+      const float* const motion = job.motion.row<const float>(row);
+      float* const background = job.background.row<float>(row);
+      for (int x = 0; x < job.width; ++x) {
+        if (motion[4 * x + 3] > 0.0f) continue;
+        const float factor = view.factor(x, y);
+        if (factor < 1.0f) {
+          for (int channel = 0; channel < 3; ++channel) background[4 * x + channel] *= factor;
+        }
+      }
+    }
+  });
+}
+
+}  // namespace heliograph::render::kernels

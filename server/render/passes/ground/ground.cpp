@@ -1,0 +1,96 @@
+#include "render/passes/ground/ground.hpp"
+
+#include <algorithm>
+#include <span>
+
+#include "render/kernels/ground/ground.hpp"
+#include "render/passes/formats.hpp"
+#include "render/passes/rays/ray_stream.hpp"
+#include "render/resources/ground_plane.hpp"
+#include "render/resources/moving_scene.hpp"
+#include "render/resources/scene_motion.hpp"
+#include "shaders/embedded.hpp"
+
+namespace heliograph::render {
+namespace {
+
+using formats::storage;
+
+constexpr std::uint32_t ground_texels = shared::ground_side * shared::ground_side;
+constexpr std::uint32_t frames_of_rays = 64;
+// While things move and shortly after, frames count less and less.
+constexpr std::uint32_t moving_frames = 8;
+constexpr float kept_in_motion = 0.6f;
+
+/// Frames since what is known was new.
+std::uint32_t frames_of_ground(const FrameInputs& in) {
+  return std::min(in.clock.age, in.scene_motion.still_frames);
+}
+
+float kept_of_ground(const FrameInputs& in) {
+  if (in.constants.history_invalid != 0) return 0.0f;
+  return in.scene_motion.still_frames < moving_frames ? kept_in_motion : 1.0f;
+}
+
+/// In which a texel and those around it have some 200 samples.
+int ground_filter_radius(std::uint32_t frames) {
+  return frames < 4 ? 3 : frames < 12 ? 2 : frames < 32 ? 1 : 0;
+}
+
+}  // namespace
+
+gpu::BufferRef trace_ground(gpu::FramePlan& plan, const FrameInputs& in) {
+  const bool catches = catches_shadows(in.settings, in.moving);
+  const gpu::BufferRef shade = plan.buffer(
+      "ground.shade", sizeof(float) * (catches ? ground_texels : 1), storage, gpu::Memory::device);
+  if (!catches) return shade;
+  plan.only_when(
+      [in] { return frames_of_ground(in) < frames_of_rays; },
+      [&] {
+        const auto lights =
+            plan.buffer("ground.lights", sizeof(shared::GroundLight) * shared::ground_lights,
+                        storage, gpu::Memory::upload);
+        plan.host("ground.lights", [&plan, in, lights] {
+          auto* const first = reinterpret_cast<shared::GroundLight*>(plan.get(lights).mapped());
+          choose_ground_lights(in.settings, in.moving, {first, shared::ground_lights});
+        });
+        const tracing::RayStream rays = declare_rays(
+            plan, "ground", ground_texels * shared::ground_rays, tracing::RayKind::ambient);
+        begin_rays(plan, in, "ground", rays);
+        plan.pass("ground.rays", in.program(shaders::ground_rays))
+            .bind<kernels::GroundRaysBindings>({.lights = lights, .rays = ray_sink(rays)})
+            .dispatch({ground_texels, 1})
+            .host(kernels::ground_rays, in.constants);
+        const auto occluded = plan.buffer("ground.occluded", sizeof(std::uint32_t) * rays.capacity,
+                                          storage, gpu::Memory::device);
+        in.tracer.trace_any(plan, "ground.trace", in.structure, rays, occluded);
+        const auto known = plan.buffer("ground.texels", sizeof(shared::GroundTexel) * ground_texels,
+                                       storage, gpu::Memory::device);
+        plan.pass("ground.gather", in.program(shaders::ground_gather))
+            .bind<kernels::GroundGatherBindings>(
+                {.rays = rays.rays, .occluded = occluded, .texels = known})
+            .constants([in] { return kernels::GroundGatherConstants{kept_of_ground(in)}; })
+            .dispatch({ground_texels, 1})
+            .host(kernels::ground_gather);
+        plan.pass("ground.filter", in.program(shaders::ground_filter))
+            .bind<kernels::GroundFilterBindings>({.texels = known, .shade = shade})
+            .constants([in] {
+              return kernels::GroundFilterConstants{ground_filter_radius(frames_of_ground(in))};
+            })
+            .dispatch({shared::ground_side, shared::ground_side})
+            .host(kernels::ground_filter);
+      });
+  return shade;
+}
+
+void shade_ground(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                  gpu::BufferRef ground, gpu::ImageRef background) {
+  if (!catches_shadows(in.settings, in.moving)) return;
+  plan.pass("ground.shade", in.program(shaders::ground_shade))
+      .bind<kernels::GroundShadeBindings>(
+          {.motion = gbuffer.motion, .shade = ground, .background = background})
+      .dispatch(gpu::each_pixel())
+      .host(kernels::ground_shade, in.constants);
+}
+
+}  // namespace heliograph::render
