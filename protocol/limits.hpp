@@ -36,6 +36,10 @@ inline constexpr std::size_t max_listed_nodes = 10000;
 /// Lengths of names, bytes.
 inline constexpr std::size_t max_session_name = 64;  // viewers, presets and buffers as well
 inline constexpr std::size_t max_node_name = 256;    // cameras, clips, lights, materials, variants
+inline constexpr std::size_t max_bookmark_name = 120;
+/// Bookmarks of a session, of all its scenes, and the data URL of one's image, bytes.
+inline constexpr std::size_t max_bookmarks = 64;
+inline constexpr std::size_t max_thumbnail_url = 16384;
 inline constexpr std::uint32_t max_idle_timeout = 31'536'000;  // seconds
 inline constexpr std::size_t max_scene_name = 512;  // paths in the catalogue; environments as well
 

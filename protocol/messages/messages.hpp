@@ -4,6 +4,7 @@
 // in these files is all there is: parsing, validation, writing and the OpenRPC document come from
 // each message's `fields()`.
 
+#include "protocol/messages/bookmark_messages.hpp"
 #include "protocol/messages/frame_messages.hpp"
 #include "protocol/messages/job_messages.hpp"
 #include "protocol/messages/loading_messages.hpp"

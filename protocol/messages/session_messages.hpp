@@ -154,6 +154,7 @@ struct Camera {
   Vec3 up{0.0f, 1.0f, 0.0f};
   float vertical_fov = 45.0f;
   std::optional<std::string> name;
+  bool fitted = false;
   std::uint32_t rev = 0;
 
   static constexpr auto fields() {
@@ -164,6 +165,9 @@ struct Camera {
         field("vertical_fov", &Camera::vertical_fov, "Vertical field of view.").unit("degrees"),
         field("name", &Camera::name, "Name of the scene camera; null after it was moved.")
             .or_null(),
+        field("fitted", &Camera::fitted,
+              "Whether the server has placed it to show the whole scene, and no viewer has moved "
+              "it since."),
         field("rev", &Camera::rev, "Revision of the session's state."),
     };
   }

@@ -32,6 +32,8 @@ NAMES = {
     "scene.info.clips": "ClipInfo",
     "scene.pick": "Pick",
     "camera.get": "Camera",
+    "bookmarks.list": "BookmarkList",
+    "bookmarks.list.bookmarks": "Bookmark",
     "settings.get": "SettingsState",
     "settings.patch": "AppliedSettings",
     "settings.presets.presets": "PresetInfo",

@@ -319,6 +319,8 @@ export interface SceneCancelResult {
 export interface Camera {
   /** Position of the camera, world space. [metres] */
   eye: Vector3;
+  /** Whether the server has placed it to show the whole scene, and no viewer has moved it since. */
+  fitted: boolean;
   /** Name of the scene camera; null after it was moved. */
   name: string | null;
   /** Revision of the session's state. */
@@ -406,6 +408,59 @@ export interface AnimationSeekParams {
 export interface AnimationRateParams {
   /** Playback speed: clip seconds per second. */
   rate: number;
+}
+
+export interface Bookmark {
+  /** Position of the camera, world space. [metres] */
+  eye: Vector3;
+  /** Its name, unique among the scene's bookmarks. */
+  name: string;
+  /** The point at the centre of the image. [metres] */
+  target: Vector3;
+  /** A small image as a data URL, if it has one. */
+  thumbnail?: string;
+  /** The up direction of the image. */
+  up: Vector3;
+  /** Vertical field of view. [degrees] */
+  vertical_fov: number;
+}
+
+/** Result of bookmarks.list. */
+export interface BookmarkList {
+  /** Its bookmarks, the oldest first. */
+  bookmarks: Bookmark[];
+  /** The scene that the session shows; null: none. */
+  scene: string | null;
+}
+
+/** Parameters of bookmarks.add. */
+export interface BookmarksAddParams {
+  /** Position of the camera; absent: the session's. [metres] */
+  eye?: Vector3;
+  /** Its name; absent: the first free "View 1", "View 2". */
+  name?: string;
+  /** The point at the centre of the image; absent: the session's. [metres] */
+  target?: Vector3;
+  /** A small JPEG, PNG or WebP image as a data URL (data:image/...;base64,...). */
+  thumbnail?: string;
+  /** The up direction of the image; absent: the session's. */
+  up?: Vector3;
+  /** Vertical field of view; absent: the session's. [degrees] */
+  vertical_fov?: number;
+}
+
+/** Parameters of bookmarks.rename. */
+export interface BookmarksRenameParams {
+  /** A name from bookmarks.list. */
+  name: string;
+  /** Its new name. */
+  to: string;
+}
+
+/** Parameters of bookmarks.remove. */
+export interface BookmarksRemoveParams {
+  /** A name from bookmarks.list. */
+  name: string;
 }
 
 /** Result of settings.get. */
@@ -1127,6 +1182,14 @@ export interface SceneUnloadedNotification {
   name: string;
 }
 
+/** Parameters of the notification bookmarks.changed. */
+export interface BookmarksChangedNotification {
+  /** The viewer that changed them; empty: the server. */
+  by: string;
+  /** The bookmarks after the change. */
+  list: BookmarkList;
+}
+
 /** Parameters of the notification settings.changed. */
 export interface SettingsChangedNotification {
   /** The viewer that changed them; empty: the server. */
@@ -1316,6 +1379,14 @@ export interface Methods {
   "animation.seek": { params: AnimationSeekParams; result: AnimationState };
   /** Sets the playback speed. */
   "animation.rate": { params: AnimationRateParams; result: AnimationState };
+  /** Lists the bookmarks of the scene that the session shows. */
+  "bookmarks.list": { params: Empty; result: BookmarkList };
+  /** Adds a bookmark of a camera. It stays in the session, also while that shows another scene. */
+  "bookmarks.add": { params: BookmarksAddParams; result: BookmarkList };
+  /** Gives a bookmark another name. */
+  "bookmarks.rename": { params: BookmarksRenameParams; result: BookmarkList };
+  /** Removes a bookmark. */
+  "bookmarks.remove": { params: BookmarksRemoveParams; result: BookmarkList };
   /** Returns the whole tree of settings. */
   "settings.get": { params: Empty; result: SettingsState };
   /** Changes settings by a merge patch (RFC 7386). On any error nothing changes. */
@@ -1426,6 +1497,8 @@ export interface Notifications {
   "scene.changed": SceneChangedNotification;
   /** The scene was unloaded. */
   "scene.unloaded": SceneUnloadedNotification;
+  /** Another viewer added, renamed or removed a bookmark. */
+  "bookmarks.changed": BookmarksChangedNotification;
   /** Another viewer changed settings. */
   "settings.changed": SettingsChangedNotification;
   /** Another viewer entered or left lockstep; single steps are not reported. */

@@ -52,4 +52,46 @@ Camera SessionCamera::publish(const std::string& by) {
   return message.camera;
 }
 
+protocol::BookmarkList SessionCamera::bookmarks() const {
+  const std::lock_guard lock(core_.mutex);
+  return bookmarks_locked();
+}
+
+protocol::BookmarkList SessionCamera::bookmarks_locked() const {
+  if (!core_.scene) return {};
+  const std::string& scene = core_.scene_info.name;
+  return {.scene = scene, .bookmarks = core_.bookmarks.of_scene(scene)};
+}
+
+template <class Change>
+Result<protocol::BookmarkList> SessionCamera::change_bookmarks(const std::string& by,
+                                                               const Change& change) {
+  const std::lock_guard lock(core_.mutex);
+  if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
+  if (const Result<void> done = change(core_.scene_info.name); !done) return done.error();
+  core_.lead();
+  const protocol::BookmarksChanged message{.list = bookmarks_locked(), .by = by};
+  core_.notify_others_latest<protocol::notifications::bookmarks_changed>(by, message);
+  return message.list;
+}
+
+Result<protocol::BookmarkList> SessionCamera::add_bookmark(const protocol::BookmarkAdd& request,
+                                                           const std::string& by) {
+  return change_bookmarks(by, [&](const std::string& scene) {
+    return core_.bookmarks.add(scene, request, core_.camera.message(core_.rev));
+  });
+}
+
+Result<protocol::BookmarkList> SessionCamera::rename_bookmark(
+    const protocol::BookmarkRename& request, const std::string& by) {
+  return change_bookmarks(
+      by, [&](const std::string& scene) { return core_.bookmarks.rename(scene, request); });
+}
+
+Result<protocol::BookmarkList> SessionCamera::remove_bookmark(const protocol::BookmarkName& request,
+                                                              const std::string& by) {
+  return change_bookmarks(
+      by, [&](const std::string& scene) { return core_.bookmarks.remove(scene, request.name); });
+}
+
 }  // namespace heliograph::session

@@ -21,8 +21,22 @@ class SessionCamera {
   /// Shows the whole scene, or some of its nodes.
   protocol::Result<protocol::Camera> fit(const protocol::CameraFit& request, const std::string& by);
 
+  /// Of the scene that is shown.
+  protocol::BookmarkList bookmarks() const;
+  protocol::Result<protocol::BookmarkList> add_bookmark(const protocol::BookmarkAdd& request,
+                                                        const std::string& by);
+  protocol::Result<protocol::BookmarkList> rename_bookmark(const protocol::BookmarkRename& request,
+                                                           const std::string& by);
+  protocol::Result<protocol::BookmarkList> remove_bookmark(const protocol::BookmarkName& request,
+                                                           const std::string& by);
+
  private:
   protocol::Camera publish(const std::string& by);
+  /// Changes the bookmarks by `change(scene)`, under the lock. What frames show stays.
+  template <class Change>
+  protocol::Result<protocol::BookmarkList> change_bookmarks(const std::string& by,
+                                                            const Change& change);
+  protocol::BookmarkList bookmarks_locked() const;
 
   SessionCore& core_;
 };

@@ -64,11 +64,64 @@ class Animation(_Group):
         return self._call("animation.rate", _given({"rate": rate}))
 
 
+class Bookmarks(_Group):
+    def list(self) -> Dict[str, Any]:
+        """Lists the bookmarks of the scene that the session shows.
+
+        Returns: bookmarks, scene.
+        """
+        return self._call("bookmarks.list", {})
+
+    def add(
+            self,
+            *,
+            eye: List[float] = _UNSET,
+            name: str = _UNSET,
+            target: List[float] = _UNSET,
+            thumbnail: str = _UNSET,
+            up: List[float] = _UNSET,
+            vertical_fov: float = _UNSET) -> Dict[str, Any]:
+        """Adds a bookmark of a camera. It stays in the session, also while that shows another
+        scene.
+
+        eye: Position of the camera; absent: the session's. [metres]
+        name: Its name; absent: the first free "View 1", "View 2".
+        target: The point at the centre of the image; absent: the session's. [metres]
+        thumbnail: A small JPEG, PNG or WebP image as a data URL (data:image/...;base64,...).
+        up: The up direction of the image; absent: the session's.
+        vertical_fov: Vertical field of view; absent: the session's. [degrees]
+
+        Returns: bookmarks, scene.
+        """
+        return self._call("bookmarks.add", _given({
+            "eye": eye, "name": name, "target": target, "thumbnail": thumbnail,
+            "up": up, "vertical_fov": vertical_fov}))
+
+    def rename(self, *, name: str, to: str) -> Dict[str, Any]:
+        """Gives a bookmark another name.
+
+        name: A name from bookmarks.list.
+        to: Its new name.
+
+        Returns: bookmarks, scene.
+        """
+        return self._call("bookmarks.rename", _given({"name": name, "to": to}))
+
+    def remove(self, *, name: str) -> Dict[str, Any]:
+        """Removes a bookmark.
+
+        name: A name from bookmarks.list.
+
+        Returns: bookmarks, scene.
+        """
+        return self._call("bookmarks.remove", _given({"name": name}))
+
+
 class Camera(_Group):
     def get(self) -> Dict[str, Any]:
         """Returns the camera.
 
-        Returns: eye, name, rev, target, up, vertical_fov.
+        Returns: eye, fitted, name, rev, target, up, vertical_fov.
         """
         return self._call("camera.get", {})
 
@@ -92,7 +145,7 @@ class Camera(_Group):
         up: The up direction of the image.
         vertical_fov: Vertical field of view. [degrees]
 
-        Returns: eye, name, rev, target, up, vertical_fov.
+        Returns: eye, fitted, name, rev, target, up, vertical_fov.
         """
         return self._call("camera.set", _given({
             "eye": eye, "name": name, "seq": seq, "target": target, "up": up,
@@ -116,7 +169,7 @@ class Camera(_Group):
             input_seq_echo.
         yaw: Rotation about the up axis, counter-clockwise seen from above. [degrees]
 
-        Returns: eye, name, rev, target, up, vertical_fov.
+        Returns: eye, fitted, name, rev, target, up, vertical_fov.
         """
         return self._call("camera.orbit", _given({
             "distance": distance, "dolly": dolly, "pitch": pitch, "seq": seq, "yaw":
@@ -128,7 +181,7 @@ class Camera(_Group):
         nodes: Ids from nodes.list, which are shown with all below them; absent: the whole
             scene.
 
-        Returns: eye, name, rev, target, up, vertical_fov.
+        Returns: eye, fitted, name, rev, target, up, vertical_fov.
         """
         return self._call("camera.fit", _given({"nodes": nodes}))
 
@@ -675,6 +728,7 @@ class Methods:
     def __init__(self, call):
         self._call = call
         self.animation = Animation(call)
+        self.bookmarks = Bookmarks(call)
         self.camera = Camera(call)
         self.environment = Environment(call)
         self.frame = Frame(call)

@@ -11,6 +11,7 @@ namespace heliograph::session {
 void add_session_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_scene_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_camera_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
+void add_bookmark_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_animation_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_settings_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_stream_commands(protocol::Dispatcher& dispatcher, SessionHost& host);

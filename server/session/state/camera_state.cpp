@@ -117,12 +117,14 @@ scene::Camera orbited(scene::Camera camera, const protocol::CameraOrbit& request
 void CameraState::copy_from(const CameraState& other) {
   camera_ = other.camera_;
   name_ = other.name_;
+  fitted_ = other.fitted_;
   discontinuities_ = other.discontinuities_ + 1;
 }
 
 void CameraState::reset(const scene::Scene& scene, float aspect) {
   ++discontinuities_;
-  if (scene.cameras.empty()) {
+  fitted_ = scene.cameras.empty();
+  if (fitted_) {
     camera_ = fitting_camera(scene.bounds, scene::Camera().vertical_fov, aspect);
     name_.reset();
   } else {
@@ -173,6 +175,7 @@ void CameraState::move(const scene::Camera& camera, std::optional<std::string> n
   if (!scene::same_view(camera_, camera)) ++moves_;
   camera_ = camera;
   name_ = std::move(name);
+  fitted_ = false;
 }
 
 std::vector<stream::InputEcho> CameraState::inputs() const {
@@ -192,6 +195,7 @@ protocol::Camera CameraState::message(std::uint32_t rev) const {
           .up = to_protocol(camera_.up),
           .vertical_fov = camera_.vertical_fov,
           .name = name_,
+          .fitted = fitted_,
           .rev = rev};
 }
 

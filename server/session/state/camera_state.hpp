@@ -47,6 +47,7 @@ class CameraState {
 
   scene::Camera camera_;
   std::optional<std::string> name_;  // of the scene's camera that it is
+  bool fitted_ = false;              // placed to show the whole scene
   std::uint64_t moves_ = 0;
   std::uint64_t discontinuities_ = 0;
   std::map<std::string, std::uint32_t> input_seqs_;  // by viewer

@@ -42,6 +42,7 @@ void SessionCore::follow(const SessionCore& leader) {
   const std::lock_guard lock(mutex);
   const AnimationClock clock = timeline.clock();
   timeline.follow(leader.timeline);
+  bookmarks = leader.bookmarks;
   const bool same = resources == leader.resources && scene == leader.scene &&
                     settings == leader.settings && environment == leader.environment &&
                     edits.device_lights() == leader.edits.device_lights() &&

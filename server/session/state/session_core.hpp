@@ -14,6 +14,7 @@
 #include "protocol/result.hpp"
 #include "scene/scene.hpp"
 #include "session/nodes/node_state.hpp"
+#include "session/state/bookmarks.hpp"
 #include "session/state/camera_state.hpp"
 #include "session/state/capture_queue.hpp"
 #include "session/state/reference_mode.hpp"
@@ -109,6 +110,7 @@ struct SessionCore {
   std::optional<std::string> environment_name;  // with `environment`: null where the scene's own
   std::shared_ptr<const render::LitEnvironment> environment;
   CameraState camera;
+  Bookmarks bookmarks;
   Timeline timeline;
   CaptureQueue captures;
   ReferenceMode reference;

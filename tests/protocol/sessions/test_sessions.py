@@ -38,6 +38,57 @@ class Sessions(ServerTestCase):
             heard = {message["method"] for message in here.notifications}
             self.assertNotIn("camera.changed", heard)
 
+    async def test_bookmarks_belong_to_the_session_and_its_scene(self):
+        self.create("one", copy_of="main")
+        image = "data:image/jpeg;base64,/9j/"
+        async with Viewer(self.server, session="one") as here, \
+                Viewer(self.server, session="one") as there:
+            await here.call("camera.set", {"eye": [4, 1, 1]})
+            first = await here.call("bookmarks.add", {"thumbnail": image})
+            self.assertEqual((first["scene"], first["bookmarks"][0]["name"]), ("mirror", "View 1"))
+            self.assertEqual(first["bookmarks"][0]["eye"], [4, 1, 1])
+            await here.call("bookmarks.add", {"name": "front", "eye": [0, 1, 5]})
+            await here.call("bookmarks.rename", {"name": "View 1", "to": "side"})
+            both = (await there.call("bookmarks.list"))["bookmarks"]
+            self.assertEqual([bookmark["name"] for bookmark in both], ["side", "front"])
+            self.assertEqual(both[0]["thumbnail"], image)
+            self.assertNotIn("thumbnail", both[1])
+            told = [message["params"] for message in there.notifications
+                    if message["method"] == "bookmarks.changed"]
+            self.assertEqual(told[-1]["list"]["bookmarks"], both)
+            self.assertEqual(told[-1]["by"], here.hello["viewer"])
+        self.create("copy", copy_of="one")
+        listed = lambda session: self.server.call("bookmarks.list", session=session)["bookmarks"]
+        self.assertEqual(listed("copy"), both)
+        self.assertEqual(listed("main"), [])
+        self.server.call("bookmarks.remove", {"name": "side"}, session="copy")
+        self.assertEqual((len(listed("copy")), len(listed("one"))), (1, 2))
+        self.server.call("scene.load", {"name": "furnace"}, session="copy")
+        self.assertEqual(listed("copy"), [])
+        self.server.call("scene.load", {"name": "mirror"}, session="copy")
+        self.assertEqual(listed("copy"), both[1:], "bookmarks stay with their scene")
+
+    def test_mistakes_in_bookmarks_name_the_member(self):
+        self.create("one", copy_of="main")
+
+        def refused(method, parameters, code, **expected):
+            answer = self.server.ask("bookmarks." + method, parameters, session="one")
+            self.assert_error(answer, code, **expected)
+        self.server.call("bookmarks.add", {"name": "a"}, session="one")
+        self.server.call("bookmarks.add", {"name": "b"}, session="one")
+        refused("add", {"name": "a"}, CONFLICT, path="name")
+        refused("add", {"name": ""}, -32602, path="name")
+        refused("add", {"thumbnail": "javascript:0"}, -32602, path="thumbnail")
+        refused("add", {"thumbnail": "data:image/png;base64," + 16384 * "A"}, -32602,
+                path="thumbnail", limit="16384")
+        refused("add", {"eye": [0, 0, 1], "target": [0, 0, 1]}, -32602, path="target")
+        refused("rename", {"name": "c", "to": "d"}, NOT_FOUND, path="name")
+        refused("rename", {"name": "a", "to": "b"}, CONFLICT, path="to")
+        refused("remove", {"name": "c"}, NOT_FOUND, path="name")
+        for number in range(62):
+            self.server.call("bookmarks.add", {}, session="one")
+        refused("add", {}, FULL, limit="64")
+
     def test_calls_without_a_stream_address_their_session(self):
         self.create("other", scene="furnace")
         self.assertEqual(self.server.call("scene.info", session="other")["name"], "furnace")
