@@ -16,7 +16,7 @@ import { Stage } from "./harness/stage.mjs";
 
 const stage = new Stage();
 
-stage.test("a bookmark persists over a reload and moves the camera in a transition", async () => {
+stage.test("a bookmark is shared by the viewers of a session and moves the camera in a transition", async () => {
   const { page } = await stage.watch();
   const saved = await staticCamera(page, stage.server);
   await page.locator("#view").focus();
@@ -34,11 +34,14 @@ stage.test("a bookmark persists over a reload and moves the camera in a transiti
   await name.fill("From above");
   await name.press("Enter");
   await page.getByRole("button", { name: "From above", exact: true }).waitFor();
+  const other = await stage.watch();
+  await other.page.getByRole("button", { name: "From above", exact: true }).waitFor();
   await screenshot(page, "bookmarks");
   assert.deepEqual(await seriousFindings(page), []);
   await page.getByRole("button", { name: "Remove From above" }).click();
   await page.getByRole("button", { name: "Confirm: remove From above" }).click();
-  assert.equal(await page.locator(".bookmark").count(), 0);
+  await page.locator(".bookmark").waitFor({ state: "detached" });
+  await other.page.locator(".bookmark").waitFor({ state: "detached" });
 });
 
 stage.test("W flies forward, D to the right, and dragging during flight looks around", async () => {

@@ -3,7 +3,7 @@ import type { Camera } from "heliograph/messages.ts";
 import { cross, dot, length, normalize, subtract } from "./vector.ts";
 
 /** A camera as the server sends it, or one made by this page, which has no revision yet. */
-export type CameraPose = Omit<Camera, "rev"> & Partial<Pick<Camera, "rev">>;
+export type CameraPose = Omit<Camera, "rev" | "fitted"> & Partial<Pick<Camera, "rev">>;
 
 /** Unit vectors across the image, and the distance to the target. */
 export function basis(camera: Pick<CameraPose, "eye" | "target" | "up">): {

@@ -53,6 +53,8 @@ function deedOf(method: string, change: Change, schema: ControlGroup): string | 
         : "chose the environment of the scene file";
     case "scene.changed":
       return `loaded ${change.scene?.name}`;
+    case "bookmarks.changed":
+      return "changed the bookmarks";
     case "camera.changed":
       return "moved the camera";
     default:

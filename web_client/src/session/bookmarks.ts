@@ -1,62 +1,84 @@
-// Camera bookmarks per scene, stored in this browser.
+// The bookmarks of the scene: named cameras in the session, which all of its viewers share.
 
+import type { Bookmark, BookmarkList, SceneInfo } from "heliograph/messages.ts";
+import type { RpcPeer } from "heliograph/rpc.ts";
 import type { CameraPose } from "../common/camera_pose.ts";
-import { preferences } from "../common/preferences.ts";
+import { Signal } from "../common/signal.ts";
+import type { ServerCapabilities } from "./server_capabilities.ts";
 
-export interface Bookmark {
-  name: string;
-  camera: CameraPose;
-  /** A data URL. */
-  thumbnail?: string | undefined;
+export const maxNameLength = 60;
+
+interface BookmarksHost {
+  rpc: RpcPeer;
+  capabilities: ServerCapabilities;
+  scene: Signal<SceneInfo | null>;
+  attempt(action: () => Promise<unknown>): Promise<void>;
 }
 
-const maxBookmarks = 24;
-const maxNameLength = 60;
+export class Bookmarks {
+  readonly list = new Signal<Bookmark[]>([]);
+  private readonly host: BookmarksHost;
+  /** That `list` belongs to. */
+  private scene: string | null = null;
 
-function keyOf(scene: string): string {
-  return `bookmarks.${scene}`;
-}
-
-export function readBookmarks(scene: string): Bookmark[] {
-  try {
-    const stored: unknown = JSON.parse(preferences.text(keyOf(scene), "[]"));
-    return Array.isArray(stored) ? (stored as Bookmark[]) : [];
-  } catch {
-    return [];
+  constructor(host: BookmarksHost) {
+    this.host = host;
+    host.scene.watch((scene) => {
+      if (scene?.name !== this.scene && scene) void this.read();
+    });
+    // The first scene may arrive before the list of methods.
+    host.capabilities.methods.watch(() => void this.read());
   }
-}
 
-/** Adds a bookmark under the first free number. */
-export function addBookmark(scene: string, camera: CameraPose, thumbnail?: string): Bookmark[] {
-  const existing = readBookmarks(scene);
-  let number = 1;
-  while (existing.some(({ name }) => name === `View ${number}`)) number += 1;
-  const all = [
-    ...existing,
-    { name: `View ${number}`, camera: { ...camera, name: null }, thumbnail },
-  ];
-  return store(scene, all.slice(-maxBookmarks));
-}
+  take({ scene, bookmarks }: BookmarkList): void {
+    this.scene = scene;
+    this.list.set(bookmarks);
+  }
 
-export function removeBookmark(scene: string, name: string): Bookmark[] {
-  return store(
-    scene,
-    readBookmarks(scene).filter((bookmark) => bookmark.name !== name),
-  );
-}
+  /** Of the session that the page is in now. */
+  async read(): Promise<void> {
+    if (!this.host.capabilities.has("bookmarks.list")) return;
+    await this.host.attempt(async () => {
+      this.take(await this.host.rpc.request("bookmarks.list"));
+    });
+  }
 
-/** Does nothing where the name is empty or another bookmark has it. */
-export function renameBookmark(scene: string, from: string, to: string): Bookmark[] {
-  const all = readBookmarks(scene);
-  const name = to.trim().slice(0, maxNameLength);
-  if (name === "" || all.some((bookmark) => bookmark.name === name)) return all;
-  return store(
-    scene,
-    all.map((bookmark) => (bookmark.name === from ? { ...bookmark, name } : bookmark)),
-  );
-}
+  /** Adds those that this page knows to another session that shows the same scene and has none. */
+  async restore(): Promise<void> {
+    const { list, scene, host } = this;
+    const known = list.value;
+    await this.read();
+    if (known.length === 0 || list.value.length > 0 || scene !== this.scene) return;
+    await host.attempt(async () => {
+      for (const bookmark of known) this.take(await host.rpc.request("bookmarks.add", bookmark));
+    });
+  }
 
-function store(scene: string, bookmarks: Bookmark[]): Bookmark[] {
-  preferences.setText(keyOf(scene), JSON.stringify(bookmarks));
-  return bookmarks;
+  /** Under the first free number. @returns its name; null where the server refuses it */
+  async add(camera: CameraPose, thumbnail?: string): Promise<string | null> {
+    const { eye, target, up, vertical_fov } = camera;
+    let name: string | null = null;
+    await this.host.attempt(async () => {
+      const request = { eye, target, up, vertical_fov, thumbnail };
+      const added = await this.host.rpc.request("bookmarks.add", request);
+      this.take(added);
+      name = added.bookmarks.at(-1)?.name ?? null;
+    });
+    return name;
+  }
+
+  /** Does nothing where the name is empty or stays. */
+  async rename(name: string, entered: string): Promise<void> {
+    const to = entered.trim().slice(0, maxNameLength);
+    if (to === "" || to === name) return;
+    await this.host.attempt(async () => {
+      this.take(await this.host.rpc.request("bookmarks.rename", { name, to }));
+    });
+  }
+
+  async remove(name: string): Promise<void> {
+    await this.host.attempt(async () => {
+      this.take(await this.host.rpc.request("bookmarks.remove", { name }));
+    });
+  }
 }

@@ -59,11 +59,11 @@ export class CameraMoves {
   }
 
   /** Fits the scene, or these nodes of it, into the view; `place` adapts the pose to what covers the view. */
-  async fit(nodes?: number[]): Promise<void> {
+  async fit(nodes?: number[], recorded = true): Promise<void> {
     await this.host.attempt(async () => {
       const camera = await this.host.rpc.request("camera.fit", nodes ? { nodes } : {});
       const placed = this.place(camera);
-      this.remember(placed);
+      if (recorded) this.remember(placed);
       this.host.camera.set(camera);
       if (placed !== camera) this.moveTo(placed, false);
     });

@@ -9,6 +9,7 @@ import type {
 } from "heliograph/messages.ts";
 import type { CameraPose } from "../common/camera_pose.ts";
 import type { Signal } from "../common/signal.ts";
+import type { Bookmarks } from "./bookmarks.ts";
 import type { NodeStore } from "./node_store.ts";
 import type { SceneLoading } from "./scene_loading.ts";
 import type { SceneParts } from "./scene_parts.ts";
@@ -22,6 +23,7 @@ interface Targets {
   nodes: NodeStore;
   loading: SceneLoading;
   history: UndoHistory;
+  bookmarks: Bookmarks;
   stats: Signal<FrameStats | null>;
   viewRestore: ViewRestore;
   takeCamera(camera: CameraPose): void;
@@ -46,6 +48,9 @@ export function receiveNotification(targets: Targets, method: string, params: un
     case "scene.changed":
       targets.history.dropScene();
       void targets.sceneChanged((params as Notifications["scene.changed"]).scene);
+      break;
+    case "bookmarks.changed":
+      targets.bookmarks.take((params as Notifications["bookmarks.changed"]).list);
       break;
     case "session.changed":
       targets.setSession(params as Notifications["session.changed"]);

@@ -20,6 +20,7 @@ import { Connection } from "../stream/connection.ts";
 import { FrameMeters } from "../stream/frame_meters.ts";
 import { type DrawnFrame, clockMs } from "../stream/worker_messages.ts";
 import { type Activity, activityOf } from "./activity.ts";
+import { Bookmarks } from "./bookmarks.ts";
 import { CameraMoves } from "./camera_moves.ts";
 import type { FileError } from "./file_errors.ts";
 import { FrameQueries } from "./frame_queries.ts";
@@ -50,6 +51,7 @@ export class Viewer {
   readonly nodes: NodeStore;
   readonly stream: StreamRequests;
   readonly queries: FrameQueries;
+  readonly bookmarks: Bookmarks;
   readonly own: OwnSession;
   readonly history = new UndoHistory();
   readonly loading: SceneLoading;
@@ -132,7 +134,7 @@ export class Viewer {
       viewState: () => (this.scene.value ? this.viewState() : null),
       show: (view) => void this.viewRestore.show(view),
       reportFile: (error) => this.onFileError(error),
-      sceneChanged: (info) => this.sceneChanged(info),
+      sceneChanged: (info) => this.ownSceneArrived(info),
       report: (error) => this.report(error),
       inform: (sentence) => this.onInfo(sentence),
     });
@@ -162,6 +164,12 @@ export class Viewer {
       report: (error) => this.report(error),
     });
     this.nodes = new NodeStore(this);
+    this.bookmarks = new Bookmarks({
+      rpc: this.rpc,
+      capabilities: this.capabilities,
+      scene: this.scene,
+      attempt: (action) => this.attempt(action),
+    });
     this.queries = new FrameQueries({
       rpc: this.rpc,
       capabilities: this.capabilities,
@@ -312,6 +320,8 @@ export class Viewer {
     } else {
       this.connection.release({ oldestRev: 0, size: this.stream.requestedSize });
       await this.readScene();
+      await this.fitFirstView();
+      void this.bookmarks.read();
       this.sessionRestore.arrived(hello);
     }
   }
@@ -320,6 +330,7 @@ export class Viewer {
   private async viewArrived(hello: Hello): Promise<void> {
     this.sessionRestore.arrived(hello);
     await Promise.all([this.settings.load(), this.refreshScenes(), this.readScene()]);
+    if (this.mayChange) void this.bookmarks.restore();
     this.connection.release({ oldestRev: this.camera.value?.rev ?? 0 });
     await this.stream.resume();
   }
@@ -352,6 +363,7 @@ export class Viewer {
     this.loading.reset();
     this.stream.sessionChanged();
     await this.readScene();
+    void this.bookmarks.read();
   }
 
   async sceneChanged(info: SceneInfo): Promise<void> {
@@ -361,6 +373,22 @@ export class Viewer {
     this.scenes.set({ ...this.scenes.value, current: info.name });
     await this.attempt(() => this.readScene());
     await this.attempt(() => this.capabilities.readBuffers());
+  }
+
+  /** A scene that this page has loaded. */
+  private async ownSceneArrived(info: SceneInfo): Promise<void> {
+    await this.sceneChanged(info);
+    await this.fitFirstView();
+  }
+
+  /** What the server has fitted into the frame is fitted into what the panel leaves of it. */
+  private async fitFirstView(): Promise<void> {
+    const { pending } = this.viewRestore;
+    if (!this.membership.mayMove || pending || this.animation.value?.lockstep) return;
+    const camera = await this.rpc.request("camera.get").catch(() => null);
+    if (camera?.fitted && this.cameraMoves.place(camera) !== camera) {
+      await this.cameraMoves.fit(undefined, false);
+    }
   }
 
   private frameDrawn(frame: DrawnFrame): void {

@@ -1,13 +1,9 @@
 // The bookmarks of the scene: a thumbnail and a name each, which can be changed.
 
+import type { Bookmark } from "heliograph/messages.ts";
 import { cropped } from "../../previews/thumbnails.ts";
-import {
-  type Bookmark,
-  addBookmark,
-  readBookmarks,
-  removeBookmark,
-  renameBookmark,
-} from "../../session/bookmarks.ts";
+import { maxNameLength } from "../../session/bookmarks.ts";
+import { describeControl } from "../../session/control_state.ts";
 import type { Viewer } from "../../session/viewer.ts";
 import { button, element } from "../../widgets/element.ts";
 
@@ -16,33 +12,33 @@ const thumbnailWidth = 112;
 export function createBookmarkList(viewer: Viewer): { node: HTMLElement; add: () => void } {
   const list = element("ul", { class: "bookmarks", "aria-label": "Bookmarks" });
   const show = (): void => {
-    const scene = viewer.scene.value?.name;
-    const bookmarks = scene === undefined ? [] : readBookmarks(scene);
+    const bookmarks = viewer.scene.value ? viewer.bookmarks.list.value : [];
     list.hidden = bookmarks.length === 0;
-    list.replaceChildren(
-      ...bookmarks.map((bookmark) => createEntry(viewer, scene ?? "", bookmark, show)),
-    );
+    list.replaceChildren(...bookmarks.map((bookmark) => createEntry(viewer, bookmark, show)));
   };
   const add = async (): Promise<void> => {
-    const [scene, camera] = [viewer.scene.value, viewer.camera.value];
-    if (!scene || !camera) return;
+    const camera = viewer.camera.value;
+    if (!viewer.scene.value || !camera) return;
+    if (!viewer.mayChange) {
+      viewer.onInfo(describeControl(viewer.membership.controlState.value), "bookmark");
+      return;
+    }
     const frame = await viewer.connection.copyFrame();
     const thumbnail = frame ? (cropped(frame, thumbnailWidth) ?? undefined) : undefined;
     frame?.close();
-    const { name } = addBookmark(scene.name, camera, thumbnail).at(-1) as Bookmark;
-    show();
-    viewer.onInfo(`Bookmarked as ${name}`, "bookmark");
+    const name = await viewer.bookmarks.add(camera, thumbnail);
+    if (name !== null) viewer.onInfo(`Bookmarked as ${name}`, "bookmark");
   };
   viewer.scene.watch(show);
+  viewer.bookmarks.list.watch(show);
+  viewer.membership.controlState.watch(show);
   return { node: list, add: () => void add() };
 }
 
-function createEntry(
-  viewer: Viewer,
-  scene: string,
-  { name, camera, thumbnail }: Bookmark,
-  changed: () => void,
-): HTMLElement {
+/** `reset` shows the bookmarks again as they are. */
+function createEntry(viewer: Viewer, bookmark: Bookmark, reset: () => void): HTMLElement {
+  const { name, thumbnail, eye, target, up, vertical_fov } = bookmark;
+  const camera = { eye, target, up, vertical_fov, name: null };
   const image = element("img", { alt: "", class: "bookmark-image" });
   if (thumbnail) image.src = thumbnail;
   const choose = element(
@@ -51,6 +47,7 @@ function createEntry(
     thumbnail ? image : null,
     element("span", {}, name),
   );
+  if (!viewer.mayChange) return element("li", {}, choose);
   const rename = button(`Rename ${name}`, "pencil", () => {
     choose.replaceWith(entry);
     entry.focus();
@@ -61,28 +58,27 @@ function createEntry(
     type: "text",
     class: "bookmark-name",
     "aria-label": `New name of ${name}`,
-    maxlength: "60",
+    maxlength: String(maxNameLength),
     keydown: (event: KeyboardEvent) => {
       event.stopPropagation();
       cancelled = event.key === "Escape";
       if (event.key === "Enter" || event.key === "Escape") entry.blur();
     },
     blur: () => {
-      if (!cancelled) renameBookmark(scene, name, entry.value);
-      changed();
+      const renamed = cancelled ? null : viewer.bookmarks.rename(name, entry.value);
+      void Promise.resolve(renamed).then(reset);
     },
   });
   entry.value = name;
-  return element("li", {}, choose, rename, createRemoveButton(scene, name, changed));
+  return element("li", {}, choose, rename, createRemoveButton(viewer, name, reset));
 }
 
 /** Asks before it removes: the second click confirms. */
-function createRemoveButton(scene: string, name: string, changed: () => void): HTMLElement {
+function createRemoveButton(viewer: Viewer, name: string, reset: () => void): HTMLElement {
   let asked = false;
   const remove = button(`Remove ${name}`, "close", () => {
     if (asked) {
-      removeBookmark(scene, name);
-      changed();
+      void viewer.bookmarks.remove(name);
       return;
     }
     asked = true;
@@ -91,7 +87,7 @@ function createRemoveButton(scene: string, name: string, changed: () => void): H
     remove.classList.add("confirms");
   });
   remove.addEventListener("blur", () => {
-    if (asked) changed();
+    if (asked) reset();
   });
   return remove;
 }
