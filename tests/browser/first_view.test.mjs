@@ -12,7 +12,7 @@ import { Stage } from "./harness/stage.mjs";
 
 const folder = mkdtempSync(join(tmpdir(), "heliograph-first-view-"));
 after(() => rmSync(folder, { recursive: true, force: true }));
-writeFileSync(join(folder, "bare.glb"), withoutCameras(readFileSync(join(sceneRoot, "mirror.glb"))));
+writeFileSync(join(folder, "bare.glb"), withoutCameras(readFileSync(join(sceneRoot, "furnace.glb"))));
 
 const stage = new Stage({ scene: "bare", serverArguments: ["--scene-root", folder] });
 

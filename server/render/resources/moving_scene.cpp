@@ -286,8 +286,8 @@ std::uint32_t MovingScene::features() const {
 
 bool MovingScene::lit_by_studio_alone() const {
   if (!environment_->source()->is_studio || !lights_.empty()) return false;
-  // Displays and indicators are no lamps: what shines counts from a fiftieth of what radiance 1
-  // sends through a sphere around the scene.
+  // Displays and indicators light nothing else: what shines counts from a fiftieth of what radiance
+  // 1 sends through a sphere around the scene.
   constexpr float pi = std::numbers::pi_v<float>, least_share = 0.02f;
   const float radius = resources_->scene->bounds.radius();
   return resources_->emissive_power < least_share * pi * 4.0f * pi * radius * radius;

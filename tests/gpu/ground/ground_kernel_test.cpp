@@ -42,6 +42,7 @@ TEST_F(GroundKernel, DarkensTheBackgroundAsShadersDo) {
       return background;
     };
     const gpu::ImageRef shader = draw(false), host = draw(true);
+    rig.invalidate_history();
     for (std::uint32_t frame = 0; frame < 5; ++frame) {
       rig.set_view(camera, frame);
       rig.run();

@@ -196,6 +196,19 @@ class RenderSets(unittest.TestCase):
         shown = sum(front[i:i + 3] == green for i in range(0, len(front), 3))
         self.assertTrue(10 < shown < 32 * 16 - 10, shown)
 
+    def test_shadows_on_the_ground_cover_a_part_of_the_background(self):
+        def over_white(ground):
+            code, _, err = self.run_render(scene_file("furnace.glb"), "-o", ground + ".png",
+                                           "--width", "64", "--samples", "4", "--background",
+                                           "#ffffff", "--set", "background.ground=" + ground)
+            self.assertEqual((code, err), (0, ""))
+            return numpy.frombuffer(decode_png(self.bytes_of(ground + ".png")).rgb, numpy.uint8)
+        off, on = over_white("off"), over_white("on")
+        shadow = (off == 255) & (on < 235)
+        self.assertGreater(shadow.mean(), 0.03)
+        self.assertGreater(on[shadow].max(), 200, "the shadow is not soft")
+        self.assertGreater((on == 255).mean(), 0.3, "nothing is left of the background")
+
     def test_a_turntable_is_a_video(self):
         for name, beginning in (("turn.mp4", b"ftyp"), ("turn.webm", b"\x1a\x45\xdf\xa3")):
             code, _, err = self.run_render(self.mirror, "-o", name, "--turntable", "5", "--width", "64",
