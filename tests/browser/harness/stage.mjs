@@ -64,7 +64,8 @@ export class Stage {
     });
     await context.addInitScript(
       ({ hintSeen, size }) => {
-        if (location.protocol === "about:") return; // without storage
+        // Without storage: about:blank, and what Firefox loads before the page.
+        if (location.protocol === "about:" || window.origin === "null") return;
         if (hintSeen) localStorage.setItem("heliograph.hint_seen", "1");
         localStorage.setItem("heliograph.resolution", size);
       },

@@ -6,6 +6,7 @@
 #include "render/kernels/post/exposure.hpp"
 #include "render/passes/frame_inputs.hpp"
 #include "render/passes/post/mean_weight.hpp"
+#include "render/resources/environment/background.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 #include "shaders/shared/exposure.h"
@@ -24,7 +25,10 @@ float automatic_reach(const FrameInputs& in) {
     case protocol::ExposureMode::by_scene:
       break;
   }
-  return in.moving.lit_by_studio_alone() ? of_studio : 0.0f;
+  // A background that was chosen for its colour keeps it.
+  const bool by_studio =
+      shows_environment(in.settings.background) && in.moving.lit_by_studio_alone();
+  return by_studio ? of_studio : 0.0f;
 }
 
 /// Fills the histogram.
@@ -66,8 +70,11 @@ Exposure expose(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef hdr,
   plan.pass("exposure.adapt", in.program(shaders::exposure_adapt))
       .bind<kernels::ExposureAdaptBindings>(
           {.histogram = histogram, .state = exposure.state, .report = exposure.report})
-      .constants([&clock = in.clock, &settings = in.settings.exposure, reach] {
-        return kernels::ExposureAdaptConstants{clock.seconds, settings.adaptation, reach};
+      .constants([&clock = in.clock, &settings = in.settings, reach] {
+        const bool adapts = settings.exposure.mode == protocol::ExposureMode::automatic ||
+                            settings.environment.visible;
+        return kernels::ExposureAdaptConstants{clock.seconds, settings.exposure.adaptation,
+                                               adapts ? reach : 0.0f};
       })
       .dispatch({1, 1})
       .host(kernels::exposure_adapt, in.constants);
