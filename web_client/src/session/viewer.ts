@@ -381,14 +381,12 @@ export class Viewer {
     await this.fitFirstView();
   }
 
-  /** What the server has fitted into the frame is fitted into what the panel leaves of it. */
+  /** What the server has fitted into an earlier frame is fitted into what this page shows of it. */
   private async fitFirstView(): Promise<void> {
     const { pending } = this.viewRestore;
     if (!this.membership.mayMove || pending || this.animation.value?.lockstep) return;
     const camera = await this.rpc.request("camera.get").catch(() => null);
-    if (camera?.fitted && this.cameraMoves.place(camera) !== camera) {
-      await this.cameraMoves.fit(undefined, false);
-    }
+    if (camera?.fitted) await this.cameraMoves.fit(undefined, false);
   }
 
   private frameDrawn(frame: DrawnFrame): void {
