@@ -74,7 +74,6 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
   add_session_commands(dispatcher_, *this);
   add_scene_commands(dispatcher_, *this);
   add_camera_commands(dispatcher_, *this);
-  add_bookmark_commands(dispatcher_, *this);
   add_animation_commands(dispatcher_, *this);
   add_settings_commands(dispatcher_, *this);
   add_stream_commands(dispatcher_, *this);

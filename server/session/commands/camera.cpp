@@ -26,6 +26,7 @@ void add_camera_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
       [](Session& session, const protocol::CameraFit& request, const std::string& viewer) {
         return session.camera().fit(request, viewer);
       });
+  add_bookmark_commands(dispatcher, host);
 }
 
 }  // namespace heliograph::session
