@@ -71,6 +71,10 @@ void JobQueue::on_change(std::function<void(const JobInfo&)> listener) {
   listener_ = std::move(listener);
 }
 
+void JobQueue::pause_while(std::function<bool()> moving) {
+  sessions_move_ = std::move(moving);
+}
+
 void JobQueue::start() {
   queue_thread_ = std::thread([this] { run(); });
   webhook_thread_ = std::thread([this] { run_webhooks(); });

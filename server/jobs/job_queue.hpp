@@ -59,6 +59,8 @@ class JobQueue {
 
   /// Called after a change of a job, on any thread. Set before start().
   void on_change(std::function<void(const protocol::JobInfo&)> listener);
+  /// Rendering pauses while `moving` says that the images of sessions move. Set before start().
+  void pause_while(std::function<bool()> moving);
   void start();
   /// Ends the threads; the running job goes back into the queue.
   void stop();
@@ -94,6 +96,7 @@ class JobQueue {
   const QueueOptions options_;
   std::optional<std::pair<std::string, JobEnd>> unrecorded_;  // of the queue's thread
   std::function<void(const protocol::JobInfo&)> listener_;
+  std::function<bool()> sessions_move_ = [] { return false; };
   std::mutex mutex_;  // guards what follows
   JobStore store_;
   std::set<std::string> to_cancel_;

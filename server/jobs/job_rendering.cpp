@@ -10,6 +10,7 @@
 
 #include "jobs/checksum.hpp"
 #include "jobs/job_queue.hpp"
+#include "jobs/pauses.hpp"
 #include "protocol/json/codec.hpp"
 
 namespace heliograph::jobs {
@@ -145,6 +146,7 @@ void JobQueue::follow(const BegunJob& job, RenderProcess& process, JobEnd& end) 
   std::string stop_reason;
   Clock::time_point deadline = Clock::time_point::max();
   Clock::time_point next_notice = Clock::now();
+  Pauses pauses(Clock::now());
   while (!process.ended()) {
     const auto lines = process.read_lines(poll_ms);
     for (const std::string& line : lines) take_event(job, line, end);
@@ -156,6 +158,7 @@ void JobQueue::follow(const BegunJob& job, RenderProcess& process, JobEnd& end) 
       process.interrupt();
       deadline = Clock::now() + grace;
     }
+    process.set_paused(stop_reason.empty() && pauses.update(Clock::now(), sessions_move_()));
     if (Clock::now() >= deadline) process.kill();
   }
   const std::lock_guard lock(mutex_);

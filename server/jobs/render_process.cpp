@@ -131,8 +131,14 @@ void RenderProcess::reap() {
   ended_ = true;
 }
 
+void RenderProcess::set_paused(bool paused) {
+  if (ended_ || std::exchange(paused_, paused) == paused) return;
+  ::kill(pid_, paused ? SIGTSTP : SIGCONT);
+}
+
 void RenderProcess::interrupt() {
   if (!ended_) ::kill(pid_, SIGTERM);
+  set_paused(false);
 }
 
 void RenderProcess::kill() {

@@ -28,7 +28,9 @@ class RenderProcess {
   int exit_code() const { return exit_code_; }
   /// The last lines of its standard error.
   const std::string& errors() const { return errors_; }
-  /// Asks it to end.
+  /// Stops it, or lets it go on; it does not count the time between against its limits.
+  void set_paused(bool paused);
+  /// Asks it to end; it goes on if it was paused.
   void interrupt();
   void kill();
 
@@ -40,6 +42,7 @@ class RenderProcess {
   int output_ = -1;
   int error_ = -1;
   bool ended_ = false;
+  bool paused_ = false;
   int exit_code_ = 0;
   std::string unfinished_line_;
   std::string errors_;

@@ -107,6 +107,7 @@ void SessionHost::follow_jobs() {
     const std::string key = "job.changed " + job.job;
     for (const auto& session : sessions_.all()) session->viewers().send_all(text, key);
   });
+  options_.jobs->pause_while([this] { return render_loop_.images_move(); });
   options_.jobs->start();
 }
 

@@ -10,6 +10,7 @@
 #include "cli/log.hpp"
 #include "cli/render/output_file.hpp"
 #include "cli/render/render_scene.hpp"
+#include "cli/render/stopped_time.hpp"
 
 namespace heliograph::cli {
 namespace {
@@ -78,6 +79,7 @@ int run(const RenderOptions& options) {
     throw std::runtime_error("--report: cannot write " + options.report);
   }
   cancel_on_signals();
+  count_stopped_time();
   RenderReport report(progress_kind(options), tasks.size(), count_images(tasks));
   RenderContext context{.options = options, .report = report, .canceled = canceled};
   bool complete = true;

@@ -16,6 +16,7 @@
 #include "cli/render/quality.hpp"
 #include "cli/render/render_plan.hpp"
 #include "cli/render/render_timings.hpp"
+#include "cli/render/stopped_time.hpp"
 #include "protocol/limits.hpp"
 #include "render/api/renderer.hpp"
 #include "scene/import.hpp"
@@ -143,7 +144,7 @@ class ImageEnd {
   bool reached(const render::Frame& frame) {
     if (frame.converged || frame.samples >= request_.samples.value_or(most_samples)) return true;
     if (!request_.samples && session::is_complete_at_once(request_.buffer)) return true;
-    if (request_.time_limit && Clock::now() - begin_ >= Seconds(*request_.time_limit)) return true;
+    if (request_.time_limit && seconds() >= *request_.time_limit) return true;
     if (!request_.quality || !estimate_.wants(frame.samples)) return false;
     const auto similarity = estimate_.add(frame.rgba, frame.width, frame.samples);
     return similarity && *similarity >= *request_.quality;
@@ -151,11 +152,18 @@ class ImageEnd {
 
  private:
   using Clock = std::chrono::steady_clock;
-  using Seconds = std::chrono::duration<double>;
   static constexpr std::uint32_t most_samples = protocol::max_samples_per_pixel;
+
+  /// Since the beginning, without those that the process was stopped for.
+  double seconds() const {
+    const std::chrono::duration<double> passed =
+        Clock::now() - begin_ - (stopped_time() - stopped_before_);
+    return passed.count();
+  }
 
   const protocol::RenderRequest& request_;
   const Clock::time_point begin_ = Clock::now();
+  const std::chrono::nanoseconds stopped_before_ = stopped_time();
   QualityEstimate estimate_;
 };
 

@@ -168,6 +168,7 @@ bool RenderLoop::advance_next(const Views& views) {
   fair_share_.sort(ready);
   held_back_until_.reset();
   const auto moving = std::ranges::count_if(views, [](const auto& view) { return view->moves(); });
+  if (moving > 0) moved_at_ = Clock::now();
   Views drawing;
   for (const FairShare::Key key : ready) {
     if (stopping_ || !device_ready_) return false;

@@ -45,8 +45,13 @@ class RenderLoop {
   /// Ends the threads and everything that waits for them. No callback is called afterwards.
   void stop();
   RenderTotals totals() const { return measurements_.totals(); }
+  /// Whether the image of a session moves, or did until recently.
+  bool images_move() const { return Clock::now() < moved_at_.load() + motion_end_delay; }
 
  private:
+  /// From one change to the next while somebody moves a camera.
+  static constexpr std::chrono::milliseconds motion_end_delay{500};
+
   using Views = std::vector<std::shared_ptr<SessionView>>;
 
   void run();
@@ -80,6 +85,7 @@ class RenderLoop {
   std::atomic<bool> device_ready_ = true;
   std::atomic<bool> loss_reported_ = false;
   std::atomic<std::uint64_t> device_losses_ = 0;
+  std::atomic<Clock::time_point> moved_at_ = Clock::time_point::min() + motion_end_delay;
   RetryBackoff retry_backoff_;  // of the render thread, like the next ones
   Clock::time_point retry_at_;
   std::optional<Clock::time_point> held_back_until_;

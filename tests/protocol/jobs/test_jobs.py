@@ -244,6 +244,57 @@ class Jobs(ServerTestCase):
             self.assertEqual(json.loads(body)["job"], job["job"])
 
 
+class RenderersBesideViewers(ServerTestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.arguments = ("--jobs", cls.folder.name)
+        super().setUpClass()
+
+    @classmethod
+    def tearDownClass(cls):
+        super().tearDownClass()
+        cls.folder.cleanup()
+
+    def test_a_job_waits_while_an_image_moves(self):
+        asyncio.run(self.move_beside_a_job())
+
+    async def move_beside_a_job(self):
+        client = Client(self.server)
+        job = client.create(slow())
+        await asyncio.to_thread(client.wait, job, "running")
+        async with Viewer(self.server) as viewer:
+            await self.wait_for_renderer(stopped=False)
+            async with viewer.moving():
+                await self.wait_for_renderer(stopped=True)
+            await self.wait_for_renderer(stopped=False)
+            async with viewer.moving():
+                await self.wait_for_renderer(stopped=True)
+                client.request("DELETE", "/api/v1/jobs/" + job["job"])
+                ended = await asyncio.to_thread(client.wait, job, timeout=10)
+                self.assertEqual(ended["state"], "canceled")
+
+    async def wait_for_renderer(self, stopped):
+        deadline = time.monotonic() + 15
+        while (states := renderer_states(self.server.process.pid)) != [stopped]:
+            self.assertLess(time.monotonic(), deadline, f"renderers are stopped: {states}")
+            await asyncio.sleep(0.05)
+
+
+def renderer_states(server):
+    """Of each process that a server has started, whether it is stopped."""
+    states = []
+    for process in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            with open(f"/proc/{process}/stat", encoding="ascii") as file:
+                state, parent = file.read().rsplit(")", 1)[1].split()[:2]
+        except (FileNotFoundError, ProcessLookupError):
+            continue
+        if int(parent) == server:
+            states.append(state == "T")
+    return states
+
+
 class KilledServer(ServerTestCase):
     """What a kill -9 at any stage leaves of a job."""
 
