@@ -196,21 +196,33 @@ bool JobQueue::wait(std::condition_variable& event, double seconds) {
   return !stopping_;
 }
 
+bool JobQueue::is_stopping() {
+  const std::lock_guard lock(mutex_);
+  return stopping_;
+}
+
+/// The next job; where there is none, after a while or a change. Looking and waiting are one step
+/// under the lock: a job that is created between them would wait for the next change.
+std::optional<BegunJob> JobQueue::begin_or_wait() {
+  std::unique_lock lock(mutex_);
+  if (stopping_) return std::nullopt;
+  std::optional<BegunJob> job = store_.begin(now());
+  if (!job) {
+    queue_event_.wait_for(
+        lock, std::chrono::duration<double>(std::min(expiry_interval, options_.keep_seconds)));
+  }
+  return job;
+}
+
 void JobQueue::run() {
   while (true) {
     try {
       record_end();
       expire();
-      std::optional<BegunJob> job;
-      {
-        const std::lock_guard lock(mutex_);
-        if (stopping_) return;
-        job = store_.begin(now());
-      }
-      if (job) {
+      if (const std::optional<BegunJob> job = begin_or_wait()) {
         announce(job->id);
         render(*job);
-      } else if (!wait(queue_event_, std::min(expiry_interval, options_.keep_seconds))) {
+      } else if (is_stopping()) {
         return;
       }
     } catch (const std::exception& failure) {

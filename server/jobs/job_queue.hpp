@@ -80,6 +80,8 @@ class JobQueue {
   protocol::Result<void> check(const protocol::JobCreate& request) const;
   void run();
   void run_webhooks();
+  bool is_stopping();
+  std::optional<BegunJob> begin_or_wait();
   bool wait(std::condition_variable& event, double seconds);
   void expire();
   void render(const BegunJob& job);
