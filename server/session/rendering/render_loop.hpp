@@ -49,7 +49,7 @@ class RenderLoop {
   bool images_move() const { return Clock::now() < moved_at_.load() + motion_end_delay; }
 
  private:
-  /// From one change to the next while somebody moves a camera.
+  /// From one change to the next of a camera that a viewer moves.
   static constexpr std::chrono::milliseconds motion_end_delay{500};
 
   using Views = std::vector<std::shared_ptr<SessionView>>;
