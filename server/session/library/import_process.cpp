@@ -12,6 +12,7 @@
 #include <charconv>
 #include <csignal>
 #include <cstring>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -129,6 +130,28 @@ bool receive_end(int socket, ImportEnd& end) {
   return count == static_cast<ssize_t>(sizeof end);
 }
 
+struct HelperAnswer {
+  std::string text;
+  ImportEnd end;
+};
+
+/// Nothing where the helper has ended.
+std::optional<HelperAnswer> ask_helper(int socket, const std::string& request,
+                                       const std::filesystem::path& file) {
+  const OwnDescriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (opened.get() < 0) throw_system_error("cannot open the file");
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw_system_error("cannot make a pipe");
+  const OwnDescriptor incoming(ends[0]);
+  OwnDescriptor outgoing(ends[1]);
+  if (!send_files(socket, request, {opened.get(), outgoing.get()})) return std::nullopt;
+  outgoing.reset();
+  HelperAnswer answer;
+  answer.text = read_answer(incoming.get());
+  if (!receive_end(socket, answer.end)) return std::nullopt;
+  return answer;
+}
+
 /// What a file does in its own process, it does not write into the log.
 std::string on_one_line(std::string text) {
   std::replace_if(
@@ -158,29 +181,18 @@ void ImportProcess::stop() {
 
 ImportedFile ImportProcess::import(ImportKind kind, const std::string& name,
                                    const std::filesystem::path& file) {
-  const OwnDescriptor opened(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
-  if (opened.get() < 0) throw_system_error("cannot open the file");
-  std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw_system_error("cannot make a pipe");
-  const OwnDescriptor answer(ends[0]);
-  OwnDescriptor to_answer(ends[1]);
   const std::string request = static_cast<char>(kind) + name;
-  int socket = helper();
-  if (!send_files(socket, request, {opened.get(), to_answer.get()})) {
-    // It was killed since the last import.
+  std::optional<HelperAnswer> answer = ask_helper(helper(), request, file);
+  if (!answer) {
+    // It was killed since the last import, or is being killed.
     end_helper();
-    socket = helper();
-    if (!send_files(socket, request, {opened.get(), to_answer.get()}))
-      throw_system_error("cannot send a file");
+    answer = ask_helper(helper(), request, file);
   }
-  to_answer.reset();
-  const std::string text = read_answer(answer.get());
-  ImportEnd end;
-  if (!receive_end(socket, end)) {
+  if (!answer) {
     end_helper();
     throw std::runtime_error("the process that imports files has ended");
   }
-  return answer_of(text, end);
+  return answer_of(answer->text, answer->end);
 }
 
 /// The socket to the helper, which runs.
