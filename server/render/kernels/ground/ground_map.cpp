@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 
+#include "render/kernels/common/random.hpp"
 #include "render/kernels/ground/ground.hpp"
 
 namespace heliograph::render::kernels {
@@ -9,19 +10,6 @@ namespace {
 
 constexpr int map_side = static_cast<int>(shared::ground_side);
 constexpr int map_grain = 1024;
-
-/// shaders/lib/math/random.glsl
-glm::uvec3 ground_hash(glm::uvec3 v) {
-  v = v * 1664525u + 1013904223u;
-  v.x += v.y * v.z;
-  v.y += v.z * v.x;
-  v.z += v.x * v.y;
-  v ^= v >> 16u;
-  v.x += v.y * v.z;
-  v.y += v.z * v.x;
-  v.z += v.x * v.y;
-  return v;
-}
 
 float ground_falloff(const shared::GroundLight& light, const glm::vec3& direction, float away) {
   const float squared = away * away;
@@ -60,11 +48,11 @@ shared::Ray ray_toward(const shared::GroundLight& light, const glm::vec3& origin
 
 void rays_of_texel(const GroundRaysJob& job, std::uint32_t texel) {
   const shared::FrameConstants& frame = job.frame;
-  const std::uint32_t first = ground_hash({texel, frame.seed, 0u}).x;
+  const std::uint32_t first = pcg3d({texel, frame.seed, 0u}).x;
   const glm::vec2 corner(texel % shared::ground_side, texel / shared::ground_side);
   for (std::uint32_t i = 0; i < shared::ground_rays; ++i) {
     const std::uint32_t number = frame.sample_index * shared::ground_rays + i;
-    const glm::uvec3 word = ground_hash({texel, frame.seed, number + 1u});
+    const glm::uvec3 word = pcg3d({texel, frame.seed, number + 1u});
     const glm::vec2 within = glm::vec2(word.x >> 8u, word.y >> 8u) * 0x1p-24f;
     const glm::vec2 at = (corner + within) * (2.0f / map_side) - 1.0f;
     const glm::vec3 origin =

@@ -5,21 +5,10 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
-/// How places of the world are hashed: shaders/lib/lighting/cell_level.glsl and
-/// shaders/lib/math/random.glsl.
-namespace heliograph::render::kernels {
+#include "render/kernels/common/random.hpp"
 
-inline glm::uvec3 pcg3d(glm::uvec3 v) {
-  v = v * 1664525u + 1013904223u;
-  v.x += v.y * v.z;
-  v.y += v.z * v.x;
-  v.z += v.x * v.y;
-  v ^= v >> 16u;
-  v.x += v.y * v.z;
-  v.y += v.z * v.x;
-  v.z += v.x * v.y;
-  return v;
-}
+/// How places of the world are hashed: shaders/lib/lighting/cell_level.glsl.
+namespace heliograph::render::kernels {
 
 /// The least integer whose power of two is `size` or more.
 inline int level_of(float size) {
