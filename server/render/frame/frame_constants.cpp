@@ -7,6 +7,7 @@
 #include "render/resources/environment/background.hpp"
 #include "render/resources/ground_plane.hpp"
 #include "render/resources/moving_scene.hpp"
+#include "render/resources/r2_sequence.hpp"
 
 namespace heliograph::render {
 namespace {
@@ -53,9 +54,7 @@ void add_environment(shared::FrameConstants& constants, const EnvironmentView& e
 
 glm::vec2 sample_jitter(std::uint32_t sample) {
   if (sample == 0) return glm::vec2(0.0f);
-  const double x = 0.5 + sample * 0.7548776662466927;
-  const double y = 0.5 + sample * 0.5698402909980532;
-  return {static_cast<float>(x - std::floor(x) - 0.5), static_cast<float>(y - std::floor(y) - 0.5)};
+  return glm::vec2(r2_point(sample) - 0.5);
 }
 
 shared::FrameConstants make_frame_constants(const scene::Camera& camera,

@@ -7,6 +7,7 @@
 
 #include "render/resources/environment/upper_light.hpp"
 #include "render/resources/moving_scene.hpp"
+#include "render/resources/r2_sequence.hpp"
 
 namespace heliograph::render {
 namespace {
@@ -20,19 +21,15 @@ struct Source {
   float irradiance;
 };
 
-/// Place number `i` in a disk of radius 1: the R2 sequence (Roberts 2018).
+/// Place number `i` in a disk of radius 1.
 glm::vec2 in_disk(std::size_t i) {
-  const double u = 0.5 + static_cast<double>(i) * 0.7548776662466927;
-  const double v = 0.5 + static_cast<double>(i) * 0.5698402909980532;
-  const double radius = std::sqrt(u - std::floor(u));
-  const double angle = 2.0 * std::numbers::pi * (v - std::floor(v));
+  const glm::dvec2 point = r2_point(i);
+  const double radius = std::sqrt(point.x), angle = 2.0 * std::numbers::pi * point.y;
   return glm::vec2(radius * std::cos(angle), radius * std::sin(angle));
 }
 
 glm::vec2 in_square(std::size_t i) {
-  const double u = 0.5 + static_cast<double>(i) * 0.7548776662466927;
-  const double v = 0.5 + static_cast<double>(i) * 0.5698402909980532;
-  return glm::vec2(2.0 * (u - std::floor(u)) - 1.0, 2.0 * (v - std::floor(v)) - 1.0);
+  return glm::vec2(2.0 * r2_point(i) - 1.0);
 }
 
 glm::vec3 across(const glm::vec3& direction) {
@@ -45,15 +42,12 @@ float area_of(const shared::Light& light) {
   return std::numbers::pi_v<float> * light.radius * light.radius;
 }
 
-shared::Light sun_light(const scene::Sun& sun, const protocol::Settings::Environment& settings) {
-  const float rotation = glm::radians(settings.rotation);
-  const float c = std::cos(rotation), s = std::sin(rotation);
-  const glm::vec3& d = sun.direction;
+shared::Light sun_light(const shared::FrameConstants& frame) {
   shared::Light light{};
   light.type = shared::light_directional;
-  light.direction = -glm::vec3(c * d.x + s * d.z, d.y, c * d.z - s * d.x);
-  light.color = sun.irradiance * settings.intensity;
-  light.radius = std::tan(glm::radians(0.5f * sun.angular_diameter));
+  light.direction = -frame.sun_direction;
+  light.color = frame.sun_irradiance;
+  light.radius = frame.sun_radius;
   return light;
 }
 
@@ -134,21 +128,18 @@ glm::vec4 ground_plane(const protocol::Settings& settings, const MovingScene& sc
   return {middle.x, bounds.minimum.y, middle.z, half_side};
 }
 
-void choose_ground_lights(const protocol::Settings& settings, const MovingScene& scene,
+void choose_ground_lights(const shared::FrameConstants& frame, const UpperLight& sky,
+                          std::span<const shared::Light> scene_lights,
                           std::span<shared::GroundLight> lights) {
-  const glm::vec3 middle(ground_plane(settings, scene));
-  const bool separate_sun = settings.environment.separate_sun;
-  const auto sky = scene.environment().upper_light(separate_sun);
-  const auto& sun = scene.environment().view(separate_sun).sun;
-  std::vector<shared::Light> all = scene.lights();
-  if (sun) all.push_back(sun_light(*sun, settings.environment));
-  const float diameter = settings.shadows.angular_diameter_override;
+  const glm::vec3 middle(frame.ground);
+  std::vector<shared::Light> all(scene_lights.begin(), scene_lights.end());
+  if (frame.sun_radius >= 0.0f) all.push_back(sun_light(frame));
   for (shared::Light& light : all) {
-    if (light.type != shared::light_directional || diameter < 0.0f) continue;
-    light.radius = std::tan(glm::radians(0.5f * diameter));
+    if (light.type != shared::light_directional || frame.directional_light_radius < 0.0f) continue;
+    light.radius = frame.directional_light_radius;
   }
 
-  std::vector<Source> sources{{nullptr, sky->irradiance * settings.environment.intensity}};
+  std::vector<Source> sources{{nullptr, sky.irradiance * frame.environment_intensity}};
   for (const shared::Light& light : all) sources.push_back({&light, irradiance_of(light, middle)});
   std::erase_if(sources, [](const Source& source) { return !(source.irradiance > 0.0f); });
   std::ranges::stable_sort(sources, std::ranges::greater(), &Source::irradiance);
@@ -157,15 +148,14 @@ void choose_ground_lights(const protocol::Settings& settings, const MovingScene&
   if (sources.empty()) return;
 
   const std::vector<std::size_t> counts = shares(sources);
-  const float rotation = glm::radians(settings.environment.rotation);
-  const float c = std::cos(rotation), s = std::sin(rotation);
+  const float c = frame.environment_cos, s = frame.environment_sin;
   std::size_t at = 0;
   for (std::size_t k = 0; k < sources.size(); ++k) {
     for (std::size_t i = 0; i < counts[k]; ++i, ++at) {
       if (sources[k].light) {
         lights[at] = point_of(*sources[k].light, middle, i);
       } else {
-        const glm::vec3& d = sky->directions[i * sky->directions.size() / counts[k]];
+        const glm::vec3& d = sky.directions[i * sky.directions.size() / counts[k]];
         lights[at].place = {c * d.x + s * d.z, d.y, c * d.z - s * d.x};
         lights[at].weight = sources[k].irradiance;
       }

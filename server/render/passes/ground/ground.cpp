@@ -52,7 +52,9 @@ gpu::BufferRef trace_ground(gpu::FramePlan& plan, const FrameInputs& in) {
                         storage, gpu::Memory::upload);
         plan.host("ground.lights", [&plan, in, lights] {
           auto* const first = reinterpret_cast<shared::GroundLight*>(plan.get(lights).mapped());
-          choose_ground_lights(in.settings, in.moving, {first, shared::ground_lights});
+          const bool separate_sun = in.settings.environment.separate_sun;
+          choose_ground_lights(in.constants, *in.moving.environment().upper_light(separate_sun),
+                               in.moving.lights(), {first, shared::ground_lights});
         });
         const tracing::RayStream rays = declare_rays(
             plan, "ground", ground_texels * shared::ground_rays, tracing::RayKind::ambient);

@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <numbers>
 
+#include "render/resources/r2_sequence.hpp"
+
 namespace heliograph::render {
 namespace {
 
@@ -23,12 +25,6 @@ std::array<double, 2> row_edges(std::uint32_t row, const scene::Environment& map
 double row_weight(std::uint32_t row, const scene::Environment& map) {
   const auto [upper, lower] = row_edges(row, map);
   return (lower - upper) * std::numbers::pi / map.width;
-}
-
-/// A number in [0, 1) for the `i`th of a sequence that fills the interval evenly.
-double even(std::size_t i, double step) {
-  const double at = 0.5 + static_cast<double>(i) * step;
-  return at - std::floor(at);
 }
 
 /// The direction at column `u` of the map, from 0 to 1, and this square of the polar angle's sine.
@@ -64,9 +60,9 @@ UpperLight upper_light(const scene::Environment& map, std::size_t count) {
       while (static_cast<double>(light.directions.size()) <= due) {
         const std::size_t drawn = light.directions.size();
         if (drawn == count) break;
-        const double u = (x + even(drawn, 0.7548776662466927)) / map.width;
+        const glm::dvec2 within = r2_point(drawn);
         light.directions.push_back(
-            direction_at(u, std::lerp(upper, lower, even(drawn, 0.5698402909980532))));
+            direction_at((x + within.x) / map.width, std::lerp(upper, lower, within.y)));
       }
     }
   }
