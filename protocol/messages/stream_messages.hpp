@@ -218,7 +218,8 @@ struct FrameCapture {
             .or_default(),
         field("samples", &FrameCapture::samples,
               "Samples per pixel to wait for, at most accumulation.max_samples, 1 without "
-              "accumulation; absent: wait for the converged frame.")
+              "accumulation; absent: as many as that, and with reference.use when_static those of "
+              "the path tracer besides.")
             .range(1, max_samples_per_pixel),
     };
   }

@@ -588,7 +588,7 @@ export interface FrameCaptureParams {
   format?: "png" | "jpeg" | "webp" | "npy" | "exr";
   /**
    * Samples per pixel to wait for, at most accumulation.max_samples, 1 without accumulation;
-   * absent: wait for the converged frame.
+   * absent: as many as that, and with reference.use when_static those of the path tracer besides.
    */
   samples?: number;
 }

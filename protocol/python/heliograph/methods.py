@@ -225,7 +225,8 @@ class Frame(_Group):
         buffer: A name from frame.buffers.
         format: Format of the file: png and jpeg for viewing, npy and exr for values.
         samples: Samples per pixel to wait for, at most accumulation.max_samples, 1 without
-            accumulation; absent: wait for the converged frame.
+            accumulation; absent: as many as that, and with reference.use when_static those of
+            the path tracer besides.
 
         Returns: buffer, data, format, height, samples, width.
         """

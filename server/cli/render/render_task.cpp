@@ -64,6 +64,10 @@ protocol::Settings settings_of(const protocol::RenderRequest& request,
     settings.reference.use = protocol::ReferenceUse::always;
     settings.reference.scope = *request.reference;
   }
+  // An image is complete with the samples that were asked for.
+  if (settings.reference.use == protocol::ReferenceUse::automatic) {
+    settings.reference.use = protocol::ReferenceUse::off;
+  }
   const bool ends_otherwise = request.quality || request.time_limit;
   if (request.samples || ends_otherwise) {
     const std::uint32_t samples = request.samples.value_or(protocol::max_samples_per_pixel);

@@ -26,6 +26,12 @@ bool shows_state_since(const ReadableFrame& frame, Clock::time_point moment) {
   return frame.shows_state && (!frame.state.animation.playing || frame.began >= moment);
 }
 
+/// Whether nothing but samples of a reference that nobody has asked for is still to come.
+bool has_hybrid_samples(const protocol::Settings& settings, const render::Frame& frame) {
+  return settings.reference.use == protocol::ReferenceUse::automatic &&
+         frame.samples >= static_cast<std::uint32_t>(settings.accumulation.max_samples);
+}
+
 /// An error where there is no memory for the file: its caller waits for an answer.
 Result<Capture> encoded(const CaptureContent& content, protocol::ImageFormat format,
                         std::uint32_t samples) {
@@ -140,8 +146,8 @@ bool FrameReaders::is_ready(const PendingCapture& capture, const ReadableFrame& 
   if (newest.width != state.width || newest.height != state.height) return false;
   if (state.animation.playing || !frame.renderer.needs_frame()) return true;
   const std::optional<std::uint32_t>& samples = capture.request.samples;
-  if (!samples) return is_complete_at_once(capture.request.buffer);
-  return newest.samples >= *samples;
+  if (samples) return newest.samples >= *samples;
+  return is_complete_at_once(capture.request.buffer) || has_hybrid_samples(state.settings, newest);
 }
 
 /// False if too many files are being written already.

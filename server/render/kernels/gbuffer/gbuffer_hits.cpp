@@ -94,12 +94,14 @@ HWY_EXPORT(shade_batch);
 void gbuffer_rays(const GBufferRaysJob& job) {
   const shared::FrameConstants& frame = job.frame;
   const auto across = static_cast<int>((frame.extent.x + 7) / 8);
-  const auto tiles = across * static_cast<int>((frame.extent.y + 7) / 8);
+  const Rows rows = job.rows.within(static_cast<int>(frame.extent.y));
+  const int above = across * (rows.top / 8);
+  const int tiles = across * ((rows.bottom - rows.top + 7) / 8);
   *job.count = {static_cast<std::uint32_t>(tiles) * 64, 0, 0, 1, 0, 0, 0, 0};
   set_groups(*job.count);
   for_each_range(tiles, 8, [&](int first, int last) {
     for (int tile = first; tile < last; ++tile) {
-      HWY_DYNAMIC_DISPATCH(make_camera_rays)(frame, tile, across, job.rays + 64 * tile);
+      HWY_DYNAMIC_DISPATCH(make_camera_rays)(frame, above + tile, across, job.rays + 64 * tile);
     }
   });
 }

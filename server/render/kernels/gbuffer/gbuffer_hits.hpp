@@ -2,6 +2,7 @@
 
 #include "render/kernels/common/frame_job.hpp"
 #include "render/kernels/common/ray_sink.hpp"
+#include "render/kernels/common/tile.hpp"
 #include "render/resources/host_tables.hpp"
 
 /// The G-buffer from camera rays on all processors, in vectors.
@@ -13,9 +14,11 @@ struct GBufferRaysBindings {
   gpu::WriteBuffer<Stage, shared::RayCount> count;
   gpu::WriteBuffer<Stage, shared::Ray> rays;
 };
-using GBufferRaysJob = FrameJob<GBufferRaysBindings>;
+struct GBufferRaysJob : FrameJob<GBufferRaysBindings> {
+  Rows rows;  // whole tiles, but for the last of the frame
+};
 
-/// Writes every ray of the frame, tiles of 8 x 8 pixels one after the other.
+/// Writes the rays of these rows, tiles of 8 x 8 pixels one after the other.
 void gbuffer_rays(const GBufferRaysJob& job);
 
 /// shaders/gbuffer/gbuffer_hits.comp, or gbuffer_hits_layered.comp, which writes `layers`.

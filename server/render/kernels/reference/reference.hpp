@@ -16,7 +16,7 @@ struct ReferenceBounceBindings {
   RaySource<Stage> rays;
   gpu::ReadBuffer<Stage, shared::Hit> hits;
   gpu::ReadWriteBuffer<Stage, shared::ReferencePath> paths;  // by pixel; not read in round 0
-  RaySink<Stage> next;                                       // where paths go on
+  RaySink<Stage> next;                                       // where paths go on; begun before
   RaySink<Stage> shadows, sky, emissive;  // they carry what arrives unless they are occluded
   gpu::ReadWrite<Stage> radiance;         // rgba32f; begun in round 0
   gpu::ReadBuffer<Stage, float> ground_shade;
@@ -26,6 +26,7 @@ struct ReferenceBounceJob : FrameJob<ReferenceBounceBindings, shared::ReferenceC
   std::span<const EnvironmentCell> cells;  // of the environment that lights
   RadianceMap background;                  // what the camera sees behind the scene
   bool samples_emissive;                   // triangles of the scene shine
+  std::uint32_t blending;                  // RayCount::blending of shadows, sky and emissive
 };
 
 /// One vertex of every path. A pixel has at most one ray in each stream.

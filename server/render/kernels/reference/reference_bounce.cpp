@@ -256,6 +256,9 @@ namespace heliograph::render::kernels {
 HWY_EXPORT(bounce_batch);
 
 void reference_bounce(const ReferenceBounceJob& job) {
+  for (const auto* const lights : {&job.shadows, &job.sky, &job.emissive}) {
+    *lights->count = {0, 0, 1, 1, job.blending, 0, 0, 0};
+  }
   for_each_batch(static_cast<int>(job.rays.count->count), [&](int first, int last) {
     HWY_DYNAMIC_DISPATCH(bounce_batch)(job, first, last);
   });

@@ -65,17 +65,19 @@ bool traces_gbuffer(const gpu::Device& device, const FrameInputs& in) {
   return rays_find_gbuffer_sooner(device.report(), in.tracer.kind());
 }
 
-std::uint32_t camera_ray_capacity(VkExtent2D extent) {
-  constexpr auto side = static_cast<std::uint32_t>(kernels::tile_side);
-  return (extent.width + side - 1) / side * ((extent.height + side - 1) / side) * side * side;
+std::uint32_t camera_ray_capacity(std::uint32_t width, kernels::Rows rows) {
+  const auto height = static_cast<std::uint32_t>(rows.bottom - rows.top);
+  return ((width + 7) / 8) * ((height + 7) / 8) * 64;
 }
 
 void camera_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
-                 const tracing::RayStream& rays) {
+                 const tracing::RayStream& rays, kernels::Rows rows) {
   plan.pass(name, in.program(shaders::gbuffer_rays))
       .bind<kernels::GBufferRaysBindings>({.count = rays.count, .rays = rays.rays})
       .dispatch(gpu::each_pixel())
-      .host(kernels::gbuffer_rays, in.constants);
+      .host([&frame = in.constants, rows](const kernels::GBufferRaysJob::Pass& pass) {
+        kernels::gbuffer_rays({pass, frame, rows});
+      });
 }
 
 std::uint32_t camera_rounds(const FrameInputs& in) {
@@ -84,13 +86,15 @@ std::uint32_t camera_rounds(const FrameInputs& in) {
 
 GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
   GBuffer gbuffer = declare_gbuffer(plan, in.scene.features);
-  const std::uint32_t capacity = camera_ray_capacity(plan.extent());
+  const VkExtent2D extent = plan.extent();
+  const kernels::Rows rows{0, static_cast<int>(extent.height)};
+  const std::uint32_t capacity = camera_ray_capacity(extent.width, rows);
   auto current = declare_rays(plan, "gbuffer", capacity, tracing::RayKind::camera);
   auto next = declare_rays(plan, "gbuffer.passed", capacity, tracing::RayKind::camera);
   const gpu::BufferRef hits =
       plan.buffer("gbuffer.hits", sizeof(shared::Hit) * capacity, storage, gpu::Memory::device);
   const auto previous_vertices = plan.import(in.moving.previous_vertices());
-  camera_rays(plan, in, "gbuffer.rays", current);
+  camera_rays(plan, in, "gbuffer.rays", current, rows);
   const std::uint32_t last_round = camera_rounds(in);
   for (std::uint32_t round = 1; round <= last_round; ++round) {
     const std::string name = round == 1 ? "gbuffer" : "gbuffer." + std::to_string(round);

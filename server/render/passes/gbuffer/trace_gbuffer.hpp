@@ -2,6 +2,7 @@
 
 #include "gpu/device/device_choice.hpp"
 #include "protocol/messages/kinds.hpp"
+#include "render/kernels/common/tile.hpp"
 #include "render/passes/gbuffer/gbuffer.hpp"
 #include "tracing/ray_tracer.hpp"
 
@@ -13,13 +14,14 @@ namespace heliograph::render {
 /// is taken as it is; in scenes with blended surfaces the eighth. `depth` stays empty.
 GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in);
 
-/// The pass `name` that fills a stream with a ray through every pixel's sample, tiles of 8 x 8 one
-/// after the other; what sticks out of the frame has empty intervals.
+/// The pass `name` that fills a stream with a ray through the sample of every pixel of these rows,
+/// tiles of 8 x 8 one after the other; what sticks out of the frame has empty intervals. Devices
+/// without host kernels: all rows.
 void camera_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
-                 const tracing::RayStream& rays);
+                 const tracing::RayStream& rays, kernels::Rows rows);
 
 /// How many there are.
-std::uint32_t camera_ray_capacity(VkExtent2D extent);
+std::uint32_t camera_ray_capacity(std::uint32_t width, kernels::Rows rows);
 
 /// How many surfaces behind each other are tried: the last is taken as it is.
 std::uint32_t camera_rounds(const FrameInputs& in);

@@ -16,13 +16,12 @@ std::uint32_t strip_rays() {
   return std::max(least, of_processor * static_cast<std::uint32_t>(kernels::processors()));
 }
 
-/// RayCount::blending of a frame's streams; the same in shaders/lib/denoise/frame_blending.glsl.
+}  // namespace
+
 std::uint32_t frame_blending(const FrameInputs& in) {
   if ((in.scene.features & shared::scene_blends) == 0) return 0;
   return shared::mixed_bits(in.constants.sample_index ^ shared::mixed_bits(in.constants.seed)) | 1u;
 }
-
-}  // namespace
 
 tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
                                 std::uint32_t capacity, tracing::RayKind kind) {
@@ -40,10 +39,11 @@ std::function<bool()> has_rays(const gpu::FramePlan& plan, const tracing::RayStr
   };
 }
 
-std::vector<kernels::Rows> ray_strips(const gpu::FramePlan& plan, VkExtent2D extent) {
+std::vector<kernels::Rows> ray_strips(const gpu::FramePlan& plan, VkExtent2D extent,
+                                      std::uint32_t larger) {
   const auto height = static_cast<int>(extent.height);
   constexpr auto tile = static_cast<std::uint32_t>(kernels::tile_side);
-  const std::uint32_t tile_rows = std::max(strip_rays() / (extent.width * tile), 1u);
+  const std::uint32_t tile_rows = std::max(larger * strip_rays() / (extent.width * tile), 1u);
   if (!plan.uses_host_kernels()) return {{0, height}};
   const int step = static_cast<int>(tile_rows * tile);
   std::vector<kernels::Rows> strips;

@@ -23,6 +23,10 @@ tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
 /// fraction.
 enum class Blending { stops, by_coverage };
 
+/// RayCount::blending of streams whose rays blended surfaces stop by their coverage: that of
+/// shaders/lib/denoise/frame_blending.glsl.
+std::uint32_t frame_blending(const FrameInputs& in);
+
 /// The pass `name`.begin, which empties the stream.
 void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
                 const tracing::RayStream& rays, Blending blending = Blending::by_coverage);
@@ -33,7 +37,9 @@ std::function<bool()> has_rays(const gpu::FramePlan& plan, const tracing::RayStr
 
 /// The rows of a frame of that size, in parts whose rays are made, traced and resolved before those
 /// of the next: where the host does so, the buffers of one part are enough for all. Elsewhere one.
-std::vector<kernels::Rows> ray_strips(const gpu::FramePlan& plan, VkExtent2D extent);
+/// `larger`: than the strips of passes whose rays need little memory.
+std::vector<kernels::Rows> ray_strips(const gpu::FramePlan& plan, VkExtent2D extent,
+                                      std::uint32_t larger = 1);
 
 /// A stream in the list of a pass's bindings.
 inline kernels::RaySource<gpu::Declared> ray_source(const tracing::RayStream& rays) {

@@ -26,36 +26,35 @@ std::span<const EnvironmentCell> environment_cells(const FrameInputs& in) {
           cells.size() / sizeof(EnvironmentCell)};
 }
 
+/// The paths of some rows.
 class PathRounds {
  public:
-  PathRounds(gpu::FramePlan& plan, const FrameInputs& in, gpu::BufferRef ground)
+  PathRounds(gpu::FramePlan& plan, const FrameInputs& in, gpu::BufferRef ground,
+             gpu::ImageRef radiance, gpu::BufferRef paths, kernels::Rows rows)
       : plan_(plan),
         in_(in),
         ground_(ground),
+        rows_(rows),
         shines_((in.moving.features() & shared::scene_emissive) != 0),
-        capacity_(camera_ray_capacity(plan.extent())),
-        radiance_(plan.image(reference_buffers.radiance.name, formats::four_floats)),
+        capacity_(camera_ray_capacity(plan.extent().width, rows)),
+        radiance_(radiance),
         shadows_(declare_rays(plan, "reference.shadows", capacity_, RayKind::shadow)),
         sky_(declare_rays(plan, "reference.sky", capacity_, RayKind::ambient)),
         emissive_(
             declare_rays(plan, "reference.emissive", shines_ ? capacity_ : 1, RayKind::shadow)),
-        paths_(buffer("reference.paths", sizeof(shared::ReferencePath))),
+        paths_(paths),
         hits_(buffer("reference.hits", sizeof(shared::Hit))),
         occluded_(buffer("reference.occluded", sizeof(std::uint32_t))) {}
 
   void declare() {
     const auto bounces = static_cast<std::uint32_t>(in_.settings.reference.bounces);
-    tracing::RayStream current =
-        declare_rays(plan_, "reference.path", capacity_, RayKind::reflection);
-    tracing::RayStream next = declare_rays(plan_, "reference.next", capacity_, RayKind::reflection);
-    camera_rays(plan_, in_, "reference.camera", current);
-    // As many as the camera's rays may take to end, and one for each bounce.
+    auto current = declare_rays(plan_, "reference.path", capacity_, RayKind::reflection);
+    auto next = declare_rays(plan_, "reference.next", capacity_, RayKind::reflection);
+    camera_rays(plan_, in_, "reference.camera", current, rows_);
+    // One for every bounce, and for every surface that a path goes straight on through.
     const std::uint32_t rounds = 1 + most_blended + bounces;
     for (std::uint32_t round = 0; round < rounds; ++round) {
       begin_rays(plan_, in_, "reference.path", next, Blending::stops);
-      for (const auto* lights : {&shadows_, &sky_, &emissive_}) {
-        begin_rays(plan_, in_, "reference.lights", *lights);
-      }
       plan_.only_when(has_rays(plan_, current), [&] {
         in_.tracer.trace_closest(plan_, "reference.trace", in_.structure, current, hits_);
         bounce(round, bounces, current, next);
@@ -66,8 +65,6 @@ class PathRounds {
       std::swap(current, next);
     }
   }
-
-  gpu::ImageRef radiance() const { return radiance_; }
 
  private:
   gpu::BufferRef buffer(const std::string& name, std::size_t element) {
@@ -93,7 +90,8 @@ class PathRounds {
           const auto chosen = environment.background(in.settings.background);
           const scene::Environment& seen = chosen ? chosen->map : *environment.source();
           kernels::reference_bounce({pass, in.constants, lit_scene(in, lights),
-                                     environment_cells(in), kernels::view_map(seen), shines});
+                                     environment_cells(in), kernels::view_map(seen), shines,
+                                     frame_blending(in)});
         });
   }
 
@@ -111,6 +109,7 @@ class PathRounds {
   gpu::FramePlan& plan_;
   const FrameInputs& in_;
   gpu::BufferRef ground_;
+  kernels::Rows rows_;
   bool shines_;
   std::uint32_t capacity_;
   gpu::ImageRef radiance_;
@@ -123,9 +122,17 @@ class PathRounds {
 }  // namespace
 
 gpu::ImageRef trace_paths(gpu::FramePlan& plan, const FrameInputs& in, gpu::BufferRef ground) {
-  PathRounds rounds(plan, in, ground);
-  rounds.declare();
-  return rounds.radiance();
+  // A ray here takes some 300 bytes, with all that leaves it.
+  constexpr std::uint32_t larger_strips = 2;
+  const VkExtent2D extent = plan.extent();
+  const auto radiance = plan.image(reference_buffers.radiance.name, formats::four_floats);
+  const auto paths =
+      plan.buffer("reference.paths", sizeof(shared::ReferencePath) * extent.width * extent.height,
+                  storage, gpu::Memory::device);
+  for (const kernels::Rows rows : ray_strips(plan, extent, larger_strips)) {
+    PathRounds(plan, in, ground, radiance, paths, rows).declare();
+  }
+  return radiance;
 }
 
 }  // namespace heliograph::render
