@@ -62,6 +62,28 @@ TEST(Ground, ShadowOfASphereUnderEvenLightIsItsFormFactor) {
   }
 }
 
+// Shadows are even from the first frame on: what is averaged over texels then stays in the mean.
+TEST(Ground, FewSamplesMakeNoBlotches) {
+  const auto image = [](std::uint32_t samples) {
+    RendererRig rig(sphere_on_ground(), scene::studio_environment(), over_ground(1.8f),
+                    ground_width, ground_height);
+    rig.apply(over_white(protocol::GroundUse::on));
+    rig.accumulate(samples);
+    return rig.capture("accumulated");
+  };
+  const render::FloatImage exact = image(256);
+  for (const std::uint32_t samples : {1u, 32u}) {
+    const render::FloatImage few = image(samples);
+    float sum = 0.0f;
+    for (std::size_t i = 0; i < few.rgba.size(); i += 4) {
+      const float off = few.rgba[i] - exact.rgba[i];
+      sum += off * off;
+    }
+    const float error = std::sqrt(sum / static_cast<float>(few.rgba.size() / 4));
+    EXPECT_LT(error, 0.01f) << samples;
+  }
+}
+
 TEST(Ground, ReferenceShowsTheSameShadow) {
   RendererRig rig(sphere_on_ground(true), scene::constant_environment(glm::vec3(0.7f)),
                   over_ground(1.3f), ground_width, ground_height);
