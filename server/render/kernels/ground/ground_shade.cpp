@@ -1,15 +1,10 @@
-#include <algorithm>
-#include <cmath>
-
 #include "render/kernels/common/tile.hpp"
 #include "render/kernels/ground/ground.hpp"
+#include "render/kernels/ground/ground_factor.hpp"
 
 namespace heliograph::render::kernels {
 namespace {
 
-constexpr int shade_side = static_cast<int>(shared::ground_side);
-
-/// shaders/lib/lighting/ground.glsl
 class GroundView {
  public:
   explicit GroundView(const GroundShadeJob& job)
@@ -26,32 +21,10 @@ class GroundView {
     const glm::vec3 away = orthographic_ ? glm::vec3(0.0f, 0.0f, -1.0f) : glm::vec3(slope, -1.0f);
     const glm::vec3 view_origin = orthographic_ ? glm::vec3(slope, 0.0f) : glm::vec3(0.0f);
     const glm::vec3 origin(frame.inverse_view * glm::vec4(view_origin, 1.0f));
-    return factor(origin, glm::mat3(frame.inverse_view) * away);
+    return ground_factor(frame.ground, job_.shade, origin, glm::mat3(frame.inverse_view) * away);
   }
 
  private:
-  float factor(const glm::vec3& origin, const glm::vec3& direction) const {
-    const glm::vec4& ground = job_.frame.ground;
-    if (ground.w <= 0.0f || direction.y >= 0.0f || origin.y <= ground.y) return 1.0f;
-    const float t = (ground.y - origin.y) / direction.y;
-    const glm::vec3 met = origin + t * direction;
-    const glm::vec2 at = glm::vec2(met.x - ground.x, met.z - ground.z) / ground.w;
-    const float from_middle = glm::length(at);
-    if (!(from_middle < 1.0f)) return 1.0f;
-    const glm::vec2 texel = (0.5f * at + 0.5f) * static_cast<float>(shade_side) - 0.5f;
-    const glm::vec2 first = glm::floor(texel), between = texel - first;
-    const int x = static_cast<int>(first.x), y = static_cast<int>(first.y);
-    const float above = glm::mix(shade(x, y), shade(x + 1, y), between.x);
-    const float below = glm::mix(shade(x, y + 1), shade(x + 1, y + 1), between.x);
-    const float faded = glm::smoothstep(shared::ground_fade_start, 1.0f, from_middle);
-    return glm::mix(glm::mix(above, below, between.y), 1.0f, faded);
-  }
-
-  float shade(int x, int y) const {
-    return job_
-        .shade[std::clamp(y, 0, shade_side - 1) * shade_side + std::clamp(x, 0, shade_side - 1)];
-  }
-
   const GroundShadeJob& job_;
   bool orthographic_;
   glm::vec2 scale_;

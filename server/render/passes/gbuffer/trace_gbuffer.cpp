@@ -14,13 +14,6 @@ namespace {
 
 using formats::storage;
 
-void camera_rays(gpu::FramePlan& plan, const FrameInputs& in, const tracing::RayStream& rays) {
-  plan.pass("gbuffer.rays", in.program(shaders::gbuffer_rays))
-      .bind<kernels::GBufferRaysBindings>({.count = rays.count, .rays = rays.rays})
-      .dispatch(gpu::each_pixel())
-      .host(kernels::gbuffer_rays, in.constants);
-}
-
 /// The hits of one round.
 struct Round {
   std::string name;
@@ -72,33 +65,38 @@ bool traces_gbuffer(const gpu::Device& device, const FrameInputs& in) {
   return rays_find_gbuffer_sooner(device.report(), in.tracer.kind());
 }
 
+std::uint32_t camera_ray_capacity(VkExtent2D extent) {
+  constexpr auto side = static_cast<std::uint32_t>(kernels::tile_side);
+  return (extent.width + side - 1) / side * ((extent.height + side - 1) / side) * side * side;
+}
+
+void camera_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+                 const tracing::RayStream& rays) {
+  plan.pass(name, in.program(shaders::gbuffer_rays))
+      .bind<kernels::GBufferRaysBindings>({.count = rays.count, .rays = rays.rays})
+      .dispatch(gpu::each_pixel())
+      .host(kernels::gbuffer_rays, in.constants);
+}
+
 std::uint32_t camera_rounds(const FrameInputs& in) {
   return (in.scene.features & shared::scene_blends) != 0 ? 2 + most_blended : 4;
 }
 
 GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
   GBuffer gbuffer = declare_gbuffer(plan, in.scene.features);
-  const VkExtent2D extent = plan.extent();
-  // Whole tiles of 8 x 8.
-  const std::uint32_t capacity = ((extent.width + 7) / 8) * ((extent.height + 7) / 8) * 64;
+  const std::uint32_t capacity = camera_ray_capacity(plan.extent());
   auto current = declare_rays(plan, "gbuffer", capacity, tracing::RayKind::camera);
   auto next = declare_rays(plan, "gbuffer.passed", capacity, tracing::RayKind::camera);
   const gpu::BufferRef hits =
       plan.buffer("gbuffer.hits", sizeof(shared::Hit) * capacity, storage, gpu::Memory::device);
   const auto previous_vertices = plan.import(in.moving.previous_vertices());
-  camera_rays(plan, in, current);
+  camera_rays(plan, in, "gbuffer.rays", current);
   const std::uint32_t last_round = camera_rounds(in);
   for (std::uint32_t round = 1; round <= last_round; ++round) {
-    // Where the host sees what the rounds before have left, nothing left costs nothing.
-    const gpu::BufferRef count = current.count;
-    const auto any = [&plan, count] {
-      const auto* const rays = reinterpret_cast<const shared::RayCount*>(plan.get(count).mapped());
-      return !rays || rays->count > 0;
-    };
     const std::string name = round == 1 ? "gbuffer" : "gbuffer." + std::to_string(round);
     // Camera rays decide for themselves, by the filtered texel: as drawn triangles do.
     begin_rays(plan, in, name, next, Blending::stops);
-    plan.only_when(any, [&] {
+    plan.only_when(has_rays(plan, current), [&] {
       in.tracer.trace_closest(plan, name + ".trace", in.structure, current, hits);
       const bool last = round == last_round;
       store_hits(plan, in, {name, last, current, hits, previous_vertices, next}, gbuffer);

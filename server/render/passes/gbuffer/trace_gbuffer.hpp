@@ -13,6 +13,14 @@ namespace heliograph::render {
 /// is taken as it is; in scenes with blended surfaces the eighth. `depth` stays empty.
 GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in);
 
+/// The pass `name` that fills a stream with a ray through every pixel's sample, tiles of 8 x 8 one
+/// after the other; what sticks out of the frame has empty intervals.
+void camera_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
+                 const tracing::RayStream& rays);
+
+/// How many there are.
+std::uint32_t camera_ray_capacity(VkExtent2D extent);
+
 /// How many surfaces behind each other are tried: the last is taken as it is.
 std::uint32_t camera_rounds(const FrameInputs& in);
 

@@ -33,6 +33,13 @@ tracing::RayStream declare_rays(gpu::FramePlan& plan, const std::string& name,
           capacity, kind};
 }
 
+std::function<bool()> has_rays(const gpu::FramePlan& plan, const tracing::RayStream& rays) {
+  if (!plan.uses_host_kernels()) return [] { return true; };
+  return [&plan, count = rays.count] {
+    return reinterpret_cast<const shared::RayCount*>(plan.get(count).mapped())->count > 0;
+  };
+}
+
 std::vector<kernels::Rows> ray_strips(const gpu::FramePlan& plan, VkExtent2D extent) {
   const auto height = static_cast<int>(extent.height);
   constexpr auto tile = static_cast<std::uint32_t>(kernels::tile_side);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,10 @@ enum class Blending { stops, by_coverage };
 /// The pass `name`.begin, which empties the stream.
 void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
                 const tracing::RayStream& rays, Blending blending = Blending::by_coverage);
+
+/// Whether earlier passes have left any rays, where host kernels do: then none cost nothing.
+/// Elsewhere the device knows and the host does not: true. `plan` outlives it.
+std::function<bool()> has_rays(const gpu::FramePlan& plan, const tracing::RayStream& rays);
 
 /// The rows of a frame of that size, in parts whose rays are made, traced and resolved before those
 /// of the next: where the host does so, the buffers of one part are enough for all. Elsewhere one.

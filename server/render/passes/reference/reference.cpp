@@ -3,6 +3,7 @@
 #include "render/passes/blend/blend_surfaces.hpp"
 #include "render/passes/formats.hpp"
 #include "render/passes/rays/ray_stream.hpp"
+#include "render/passes/reference/trace_paths.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 #include "shaders/shared/ray.h"
@@ -84,6 +85,7 @@ class Wavefront {
     add(shadows_);
   }
 
+  /// Paths of at most `bounces` + 1 vertices.
   void global_illumination(std::uint32_t bounces) {
     const tracing::RayStream sky = stream("reference.sky");
     const bool shines = (in_.moving.features() & shared::scene_emissive) != 0;
@@ -160,9 +162,16 @@ bool traces_reference(const FrameInputs& in) {
 
 gpu::ImageRef trace_reference(gpu::FramePlan& plan, const FrameInputs& in, gpu::BufferRef ground) {
   const protocol::Settings::Reference& settings = in.settings.reference;
+  const bool full = settings.scope == protocol::ReferenceScope::full;
+  if (full && plan.uses_host_kernels()) {
+    gpu::ImageRef traced;
+    plan.only_when([in] { return traces_reference(in); },
+                   [&] { traced = trace_paths(plan, in, ground); });
+    return traced;
+  }
   Wavefront wavefront(plan, in, ground);
   wavefront.begin();
-  if (settings.scope == protocol::ReferenceScope::full) {
+  if (full) {
     wavefront.global_illumination(static_cast<std::uint32_t>(settings.bounces));
   } else {
     wavefront.same_paths();

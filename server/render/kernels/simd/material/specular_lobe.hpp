@@ -93,6 +93,7 @@ struct SpecularSample {
   Float3 direction;  // world
   Float3 weight;     // BRDF x cos / pdf; 0 ends the path
   Float density;
+  Float roughness;  // of the lobe
 };
 
 /// A direction of one lobe. Its weight is not multiplied by the reflectance at `v_dot_h` yet.
@@ -127,28 +128,32 @@ HWY_INLINE Float3 microfacet_reflectance(const MaterialLanes& m, Float v_dot_h) 
 
 HWY_INLINE SpecularSample sample_specular(const MaterialLanes& m, const Float2& u) {
   const LobeSample s = sample_lobe(m, m.normal, m.roughness, u);
-  return {s.direction, microfacet_reflectance(m, s.v_dot_h) * s.weight, s.density};
+  return {s.direction, microfacet_reflectance(m, s.v_dot_h) * s.weight, s.density, m.roughness};
+}
+
+/// How likely the coat's lobe is drawn.
+HWY_INLINE Float coat_share(const LayeredMaterial<Float>& m) {
+  const Mask has_coat = hn::Gt(m.coat_albedo, zero());
+  const Float3& albedo = m.specular_albedo;
+  const Float mean = (albedo.x + albedo.y + albedo.z) * number(1.0f / 3.0f);
+  return hn::IfThenElseZero(has_coat, clamped(m.coat_albedo / at_least(mean, 1e-6f), 0.05f, 0.95f));
 }
 
 /// Of a coated surface one of the two lobes is drawn, in proportion to what each gives back.
 HWY_INLINE SpecularSample sample_specular(const LayeredMaterial<Float>& m, Float2 u) {
   if (!m.coated) return sample_specular(static_cast<const MaterialLanes&>(m), u);
-  const Mask has_coat = hn::Gt(m.coat_albedo, zero());
-  const Float3& albedo = m.specular_albedo;
-  const Float mean = (albedo.x + albedo.y + albedo.z) * number(1.0f / 3.0f);
-  const Float of_coat =
-      hn::IfThenElseZero(has_coat, clamped(m.coat_albedo / at_least(mean, 1e-6f), 0.05f, 0.95f));
+  const Float of_coat = coat_share(m);
   const Mask coated = hn::Lt(u.x, of_coat);
   const Float probability = select(coated, of_coat, one() - of_coat);
   u.x = select(coated, u.x, u.x - of_coat) / probability;
-  const LobeSample s = sample_lobe(m, select(coated, m.coat_normal, m.normal),
-                                   select(coated, m.coat_roughness, m.roughness), u);
+  const Float roughness = select(coated, m.coat_roughness, m.roughness);
+  const LobeSample s = sample_lobe(m, select(coated, m.coat_normal, m.normal), roughness, u);
   const Float of_lobe = s.weight / probability;
   const Float coat =
       hn::MulAdd(m.coat_f90_minus_f0, schlick_weight(s.v_dot_h), m.coat_f0) * of_lobe;
   return {s.direction,
           select(coated, {coat, coat, coat}, microfacet_reflectance(m, s.v_dot_h) * of_lobe),
-          s.density * probability};
+          s.density * probability, roughness};
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

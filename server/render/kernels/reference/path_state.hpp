@@ -1,0 +1,102 @@
+// What the reference path tracer remembers of paths, and the random numbers that they use, in
+// vectors. Included once per instruction set; the guard is Google Highway's convention.
+#if defined(HELIOGRAPH_KERNELS_PATH_STATE_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_KERNELS_PATH_STATE_HPP
+#undef HELIOGRAPH_KERNELS_PATH_STATE_HPP
+#else
+#define HELIOGRAPH_KERNELS_PATH_STATE_HPP
+#endif
+
+#include <cstring>
+
+#include "render/kernels/simd/random.hpp"
+#include "render/kernels/simd/ray_writer.hpp"
+#include "shaders/shared/reference.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::kernels::HWY_NAMESPACE {
+
+/// shared::ReferencePath; bounces are whole numbers.
+struct PathLanes {
+  Float3 throughput;
+  Float bounces, cone_width, cone_spread;
+  Integer flags;
+  Float density;
+
+  HWY_INLINE Mask left_by_specular() const {
+    const Integer flag = integer(static_cast<int>(shared::path_specular));
+    return float_mask(hn::Eq(hn::And(flags, flag), flag));
+  }
+};
+
+HWY_INLINE Mask is_zero(Float v) {
+  return hn::Eq(v, zero());
+}
+
+HWY_INLINE Integer pixel_index(const shared::FrameConstants& frame, const PixelLanes& p) {
+  return hn::Add(hn::Mul(p.y, integer(static_cast<int>(frame.extent.x))), p.x);
+}
+
+/// Of the camera's rays.
+HWY_INLINE PathLanes first_paths(const shared::FrameConstants& frame) {
+  const glm::vec2 cone = CameraLanes(frame).cone();
+  return {numbers(1.0f), zero(), number(cone.x), number(cone.y), integer(0), zero()};
+}
+
+HWY_INLINE PathLanes load_paths(const shared::ReferencePath* paths, Integer index) {
+  static_assert(sizeof(shared::ReferencePath) == 32 &&
+                offsetof(shared::ReferencePath, bounces) == 12 &&
+                offsetof(shared::ReferencePath, density) == 28);
+  const Records records(paths, index, sizeof(shared::ReferencePath) / 4);
+  const Float4 front = records.four(0), back = records.four(4);
+  return {{front.x, front.y, front.z},
+          to_float(as_integer(front.w)),
+          back.x,
+          back.y,
+          as_integer(back.z),
+          back.w};
+}
+
+HWY_INLINE void store_paths(const PathLanes& path, Mask requested, Integer index,
+                            shared::ReferencePath* paths) {
+  const Texels<4> front(Float4{path.throughput.x, path.throughput.y, path.throughput.z,
+                               as_float(truncated(path.bounces))});
+  const Texels<4> back(
+      Float4{path.cone_width, path.cone_spread, as_float(path.flags), path.density});
+  const LaneIndices<Tag> at(index);
+  for_each_lane(requested, [&](std::size_t lane) {
+    auto* const to = reinterpret_cast<std::byte*>(paths + at.of[lane]);
+    std::memcpy(to, &front.values[4 * lane], 16);
+    std::memcpy(to + 16, &back.values[4 * lane], 16);
+  });
+}
+
+/// Numbers in [0, 1) of one round: path_number() and path_pair() of
+/// shaders/lib/rays/reference_path.glsl.
+class PathNumbers {
+ public:
+  PathNumbers(const shared::FrameConstants& frame, std::uint32_t round)
+      : frame_(frame), first_(256u + 16u * round) {}
+
+  HWY_INLINE Float one(std::uint32_t which, const PixelLanes& p) const {
+    const RandomNumbers<UnsignedTag> of(unsigned_tag, frame_.sample_index, first_ + which,
+                                        frame_.seed);
+    return of.at(as_unsigned(p.x), as_unsigned(p.y));
+  }
+  HWY_INLINE Float2 two(std::uint32_t which, const PixelLanes& p) const {
+    const RandomPairs<UnsignedTag> of(unsigned_tag, frame_.sample_index, first_ + which,
+                                      frame_.seed);
+    Float2 pair;
+    of.at(as_unsigned(p.x), as_unsigned(p.y), pair.x, pair.y);
+    return pair;
+  }
+
+ private:
+  const shared::FrameConstants& frame_;
+  std::uint32_t first_;
+};
+
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,136 @@
+// What paths meet by each lobe of a surface, and how likely it is: scatter() and scattered_light()
+// of shaders/reference/reference_bounce.comp in vectors. Included once per instruction set; the
+// guard is Google Highway's convention.
+#if defined(HELIOGRAPH_KERNELS_SCATTERING_HPP) == defined(HWY_TARGET_TOGGLE)
+#ifdef HELIOGRAPH_KERNELS_SCATTERING_HPP
+#undef HELIOGRAPH_KERNELS_SCATTERING_HPP
+#else
+#define HELIOGRAPH_KERNELS_SCATTERING_HPP
+#endif
+
+#include <numbers>
+
+#include "render/kernels/simd/material/specular_lobe.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace heliograph::render::kernels::HWY_NAMESPACE {
+
+/// Of lobes that are wide enough for a light to be met by chance.
+inline constexpr float least_scattering_roughness = 0.1f;
+
+/// Of light that a path meets by chance with `density`, where it is also sampled with `other`: two
+/// ways lead there, each weighed by how likely it is (Veach and Guibas 1995).
+HWY_INLINE Float mis_weight(Float density, Float other) {
+  const Mask sampled = hn::Gt(other, zero());
+  return select(sampled, density / select(sampled, density + other, one()), one());
+}
+
+/// How likely a path takes the specular lobe.
+template <class Material>
+HWY_INLINE Float specular_probability(const Material& m) {
+  const Float specular = luminance(m.specular_albedo);
+  return specular / at_least(specular + luminance(wide_albedo(m)), 1e-6f);
+}
+
+/// BRDF x cosine of the white sheen.
+HWY_INLINE Float3 sheen_light(const LayeredMaterial<Float>& m, const Float3& l) {
+  const Float n_dot_l = at_least(dot(m.normal, l), 0.0f);
+  const Float n_dot_h = clamped(dot(m.normal, normalized(l + m.eye)), 0.0f, 1.0f);
+  return m.sheen * (sheen_lobe(n_dot_h, n_dot_l, m.n_dot_v, m.sheen_roughness) * n_dot_l);
+}
+
+/// BRDF x cosine of the lobes that are drawn by the cosine: diffuse, sheen.
+HWY_INLINE Float3 wide_light(const MaterialLanes& m, const Float3& l) {
+  return m.diffuse_albedo * (dot(m.normal, l) * number(std::numbers::inv_pi_v<float>));
+}
+HWY_INLINE Float3 wide_light(const LayeredMaterial<Float>& m, const Float3& l) {
+  const Float3 light = wide_light(static_cast<const MaterialLanes&>(m), l);
+  return m.fuzzy ? light + sheen_light(m, l) : light;
+}
+
+/// The same over that density.
+HWY_INLINE Float3 wide_weight(const MaterialLanes& m, const Float3&) {
+  return m.diffuse_albedo;
+}
+HWY_INLINE Float3 wide_weight(const LayeredMaterial<Float>& m, const Float3& l) {
+  if (!m.fuzzy) return m.diffuse_albedo;
+  const Float by_cosine = number(std::numbers::pi_v<float>) / at_least(dot(m.normal, l), 1e-4f);
+  return m.diffuse_albedo + sheen_light(m, l) * by_cosine;
+}
+
+/// What a specular lobe sends to the eye of light along -l but for the reflectance at `v_dot_h`,
+/// BRDF x cosine, and how likely sample_lobe() draws it.
+struct LobeValue {
+  Float v_dot_h, reflected, density;
+};
+
+HWY_INLINE LobeValue lobe_value(const MaterialLanes& m, const Float3& lobe_normal, Float roughness,
+                                const Float3& l) {
+  const Float3 normal = reflecting_normal(m, lobe_normal);
+  Float3 tangent, bitangent;
+  orthonormal_basis(normal, tangent, bitangent);
+  const Float alpha = roughness * roughness;
+  const Float3 view = normalized(
+      Float3{dot(m.eye, tangent), dot(m.eye, bitangent), at_least(dot(m.eye, normal), 1e-3f)});
+  const Float3 light{dot(l, tangent), dot(l, bitangent), dot(l, normal)};
+  const Mask above = hn::Gt(light.z, zero());
+  LobeValue value;
+  value.density = hn::IfThenElseZero(above, visible_normal_pdf(view, light, alpha));
+  value.reflected =
+      hn::IfThenElseZero(above, visible_normal_weight(view, light, alpha) * value.density);
+  value.v_dot_h = dot(view, normalized(view + light));
+  return value;
+}
+
+/// Lanes in which light that is sampled falls into a lobe of this roughness.
+HWY_INLINE Mask is_scattering(Float roughness) {
+  return hn::Ge(roughness, number(least_scattering_roughness));
+}
+
+/// `value` over the densities of both ways, in lanes whose lobe scatters. `probability`: that the
+/// path takes the lobe.
+HWY_INLINE Float lobe_weight(const LobeValue& value, Float roughness, Float density,
+                             Float probability) {
+  const Float both = hn::MulAdd(probability, value.density, density);
+  return hn::IfThenElseZero(is_scattering(roughness), value.reflected / at_least(both, 1e-30f));
+}
+
+HWY_INLINE Float3 scattered_specular(const MaterialLanes& m, const Float3& l, Float density,
+                                     Float probability) {
+  if (none(is_scattering(m.roughness))) return numbers(0.0f);
+  const LobeValue value = lobe_value(m, m.normal, m.roughness, l);
+  return microfacet_reflectance(m, value.v_dot_h) *
+         lobe_weight(value, m.roughness, density, probability);
+}
+HWY_INLINE Float3 scattered_specular(const LayeredMaterial<Float>& m, const Float3& l,
+                                     Float density, Float probability) {
+  const auto& base = static_cast<const MaterialLanes&>(m);
+  if (!m.coated) return scattered_specular(base, l, density, probability);
+  const Float of_coat = coat_share(m);
+  const Float3 light = scattered_specular(base, l, density, probability * (one() - of_coat));
+  const LobeValue value = lobe_value(m, m.coat_normal, m.coat_roughness, l);
+  const Float coat = hn::MulAdd(m.coat_f90_minus_f0, schlick_weight(value.v_dot_h), m.coat_f0) *
+                     lobe_weight(value, m.coat_roughness, density, probability * of_coat);
+  return {light.x + coat, light.y + coat, light.z + coat};
+}
+
+/// BRDF x cosine over the density of `l`, which was drawn with `density` to sample a light, lobe by
+/// lobe: each with the weight that a path's own choice leaves to it.
+template <class Material>
+HWY_INLINE Float3 scattered_light(const Material& m, const Float3& l, Float density, bool diffuse,
+                                  bool specular) {
+  const Float probability = specular_probability(m);
+  Float3 sent = numbers(0.0f);
+  if (diffuse) {
+    const Float cosine = dot(l, m.normal);
+    const Float by_cosine = (one() - probability) * cosine * number(std::numbers::inv_pi_v<float>);
+    const Float both = at_least(density + at_least(by_cosine, 0.0f), 1e-30f);
+    sent = keep(hn::Gt(cosine, zero()), wide_light(m, l) * (one() / both));
+  }
+  return specular ? sent + scattered_specular(m, l, density, probability) : sent;
+}
+
+}  // namespace heliograph::render::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif
