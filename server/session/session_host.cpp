@@ -135,7 +135,7 @@ void SessionHost::work_when_idle() {
   }
 }
 
-/// Closes sessions that nobody uses, and renders thumbnails where nothing else is to be done. Gives
+/// Closes sessions without use, and renders thumbnails where nothing else is to be done. Gives
 /// the time until there is more to do.
 Clock::duration SessionHost::do_idle_work() {
   const Clock::duration next = sessions_.close_idle();
@@ -148,8 +148,8 @@ Clock::duration SessionHost::do_idle_work() {
 /// Whether no session has had a frame since this was asked last, or nothing has moved for long.
 bool SessionHost::is_idle() {
   const std::uint64_t frames = render_loop_.totals().frames.count();
-  const bool resting = std::exchange(frames_before_, frames) == frames;
-  return ready() && (resting || render_loop_.still_for() >= still_period);
+  const bool idle = std::exchange(frames_before_, frames) == frames;
+  return ready() && (idle || render_loop_.still_for() >= still_period);
 }
 
 Result<SceneThumbnails::File> SessionHost::scene_thumbnail(const std::string& scene) {
