@@ -153,7 +153,8 @@ TEST(TemporalAntialias, PointsStayOnTheSurfaceWhenTheDrawScaleChanges) {
   for (const glm::vec2 point : {glm::vec2(0.35f, 0.4f), glm::vec2(0.45f, 0.55f)}) {
     const auto expected = full.renderer.pick(point), found = rig.renderer.pick(point);
     ASSERT_TRUE(expected && *expected && found && *found);
-    EXPECT_LT(glm::distance((*found)->position, (*expected)->position), 0.05f);
+    // a pixel of the smaller frame is 0.1 m wide there.
+    EXPECT_LT(glm::distance((*found)->position, (*expected)->position), 0.1f);
   }
 }
 
