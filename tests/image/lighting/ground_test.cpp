@@ -62,27 +62,6 @@ TEST(Ground, ShadowOfASphereUnderEvenLightIsItsFormFactor) {
   }
 }
 
-// What the first frames average over texels stays in the mean of all frames.
-TEST(Ground, FewSamplesMakeNoBlotches) {
-  const auto image = [](std::uint32_t samples) {
-    RendererRig rig(sphere_on_ground(), scene::studio_environment(), over_ground(1.8f),
-                    ground_width, ground_height);
-    rig.apply(over_white(protocol::GroundUse::on));
-    rig.accumulate(samples);
-    return rig.capture("accumulated");
-  };
-  const render::FloatImage exact = image(256);
-  const render::FloatImage few = image(32);
-  float sum = 0.0f;
-  for (std::size_t i = 0; i < few.rgba.size(); i += 4) {
-    const float off = few.rgba[i] - exact.rgba[i];
-    sum += off * off;
-  }
-  const float error = std::sqrt(sum / static_cast<float>(few.rgba.size() / 4));
-  RecordProperty("error", std::to_string(error));
-  EXPECT_LT(error, 0.01f);
-}
-
 TEST(Ground, ReferenceShowsTheSameShadow) {
   RendererRig rig(sphere_on_ground(true), scene::constant_environment(glm::vec3(0.7f)),
                   over_ground(1.3f), ground_width, ground_height);

@@ -142,22 +142,6 @@ TEST(TemporalAntialias, PointsOfSmallerFramesAreTheSameSurfaces) {
   EXPECT_EQ(rig.renderer.inspect(point).size(), full.renderer.inspect(point).size());
 }
 
-// Between the last frame of a movement and the first at full size a point is asked for.
-TEST(TemporalAntialias, PointsStayOnTheSurfaceWhenTheDrawScaleChanges) {
-  const scene::Camera camera = look({0.4f, 1.0f, 3}, {0, 0, 0});
-  Edges full(camera), rig(camera);
-  rig.renderer.set_draw_scale(0.5f);
-  full.renderer.render();
-  rig.renderer.render();
-  rig.renderer.set_draw_scale(1.0f);
-  for (const glm::vec2 point : {glm::vec2(0.35f, 0.4f), glm::vec2(0.45f, 0.55f)}) {
-    const auto expected = full.renderer.pick(point), found = rig.renderer.pick(point);
-    ASSERT_TRUE(expected && *expected && found && *found);
-    // a pixel of the smaller frame is 0.1 m wide there.
-    EXPECT_LT(glm::distance((*found)->position, (*expected)->position), 0.1f);
-  }
-}
-
 // The end of motion: full size continues what was reconstructed, in the denoisers too.
 TEST(TemporalAntialias, HistoriesOutliveAChangeOfTheDrawScale) {
   const scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
