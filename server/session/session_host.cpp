@@ -136,12 +136,10 @@ void SessionHost::work_when_idle() {
 }
 
 /// Closes sessions without use, and renders thumbnails where nothing else is to be done. Gives
-/// the time until there is more to do.
+/// the time until there may be more to do: no less than what shows that the server is idle.
 Clock::duration SessionHost::do_idle_work() {
-  const Clock::duration next = sessions_.close_idle();
-  if (!thumbnails_.has_work()) return next;
-  if (is_idle()) thumbnails_.render_next();
-  const Clock::duration soon = idle_period;
+  const Clock::duration next = sessions_.close_idle(), soon = idle_period;
+  if (is_idle() && thumbnails_.has_work()) thumbnails_.render_next();
   return next < soon ? next : soon;
 }
 
@@ -153,9 +151,7 @@ bool SessionHost::is_idle() {
 }
 
 Result<SceneThumbnails::File> SessionHost::scene_thumbnail(const std::string& scene) {
-  auto image = thumbnails_.get(scene);
-  if (!image) idle_check_.notify();
-  return image;
+  return thumbnails_.get(scene);
 }
 
 /// In a session of its own, which opens the scene as any other does.
