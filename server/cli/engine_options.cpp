@@ -17,7 +17,13 @@ namespace {
 
 constexpr int max_losses = 3;  // in a row
 
-/// $XDG_CACHE_HOME/heliograph or ~/.cache/heliograph; empty if neither variable is set.
+render::JpegEncoding jpeg_encoding(const std::string& name) {
+  if (name == "on") return render::JpegEncoding::on;
+  return name == "off" ? render::JpegEncoding::off : render::JpegEncoding::automatic;
+}
+
+}  // namespace
+
 std::filesystem::path cache_folder() {
   const auto variable = [](const char* name) {
     const char* value = std::getenv(name);
@@ -29,13 +35,6 @@ std::filesystem::path cache_folder() {
   if (home.is_absolute()) return home / ".cache" / "heliograph";
   return {};
 }
-
-render::JpegEncoding jpeg_encoding(const std::string& name) {
-  if (name == "on") return render::JpegEncoding::on;
-  return name == "off" ? render::JpegEncoding::off : render::JpegEncoding::automatic;
-}
-
-}  // namespace
 
 render::EngineOptions engine_options(const DeviceOptions& options) {
   return {.device = options.device,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <memory>
 
 #include "cli/options.hpp"
@@ -9,6 +10,10 @@
 namespace heliograph::cli {
 
 render::EngineOptions engine_options(const DeviceOptions& options);
+
+/// $XDG_CACHE_HOME/heliograph or ~/.cache/heliograph; empty if neither variable is set.
+std::filesystem::path cache_folder();
+
 /// The device, set up. A device that is lost meanwhile is set up again, a few times.
 /// @throws std::runtime_error
 std::unique_ptr<render::Engine> make_engine(const DeviceOptions& options);

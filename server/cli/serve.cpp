@@ -36,6 +36,8 @@ session::HostOptions host_options(const ServeOptions& options) {
   if (!options.environment.empty()) result.environment = options.environment;
   result.import_limits = options.limits;
   result.scene_cache_bytes = options.scene_cache_bytes;
+  const std::filesystem::path cache = cache_folder();
+  if (!cache.empty()) result.thumbnail_folder = cache / "thumbnails";
   return result;
 }
 

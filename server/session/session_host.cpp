@@ -18,6 +18,15 @@ namespace {
 
 constexpr std::chrono::seconds pause_after_failure{1};
 
+// Thumbnails of scenes.
+constexpr std::uint32_t thumbnail_width = 240;
+constexpr std::uint32_t thumbnail_height = 135;
+constexpr std::uint32_t thumbnail_samples = 8;
+constexpr std::uint32_t thumbnail_timeout = 60;  // seconds
+/// The server is idle after so long without a frame, or, while views refine, without motion.
+constexpr std::chrono::seconds idle_period{1};
+constexpr std::chrono::seconds still_period{20};
+
 /// The error of a nested request, with the name of its member in the outer request.
 protocol::Error renamed(const protocol::Error& part, std::string_view path, std::string name) {
   if (part.path != path) return part;
@@ -66,8 +75,11 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
               {.environment = options_.environment,
                .limits = options_.import_limits,
                .cache_bytes = options_.scene_cache_bytes}),
-      environments_(engine,
-                    SceneCatalogue(with(options_.scene_roots, options_.environment_roots))) {
+      environments_(engine, SceneCatalogue(with(options_.scene_roots, options_.environment_roots))),
+      thumbnails_(catalogue_, options_.thumbnail_folder,
+                  [this](const std::string& scene, SceneThumbnails::Rendered done) {
+                    render_thumbnail(scene, std::move(done));
+                  }) {
   loader_.on_device_loss([this] { render_loop_.report_device_loss(); });
   environments_.on_device_loss([this] { render_loop_.report_device_loss(); });
   render_loop_.on_new_device([this] { loader_.take_new_device(); });
@@ -96,7 +108,7 @@ SessionHost::SessionHost(render::Engine& engine, HostOptions options)
   dispatcher_.on_handler_failure([](std::string_view method, std::string_view reason) {
     spdlog::error("{} failed: {}", method, reason);
   });
-  idle_thread_ = std::thread([this] { close_idle_sessions(); });
+  idle_thread_ = std::thread([this] { work_when_idle(); });
   if (options_.jobs) follow_jobs();
 }
 
@@ -111,16 +123,61 @@ void SessionHost::follow_jobs() {
   options_.jobs->start();
 }
 
-void SessionHost::close_idle_sessions() {
+void SessionHost::work_when_idle() {
   while (!stopping_) {
     Clock::duration next = pause_after_failure;
     try {
-      next = sessions_.close_idle();
+      next = do_idle_work();
     } catch (const std::exception& failure) {
       spdlog::error("idle sessions were not closed: {}", failure.what());
     }
     idle_check_.wait_until(Clock::now() + next);
   }
+}
+
+/// Closes sessions without use, and renders thumbnails where nothing else is to be done. Gives
+/// the time until there may be more to do: no less than what shows that the server is idle.
+Clock::duration SessionHost::do_idle_work() {
+  const Clock::duration next = sessions_.close_idle(), soon = idle_period;
+  if (is_idle() && thumbnails_.has_work()) thumbnails_.render_next();
+  return next < soon ? next : soon;
+}
+
+/// Whether no session has had a frame since this was asked last, or nothing has moved for long.
+bool SessionHost::is_idle() {
+  const std::uint64_t frames = render_loop_.totals().frames.count();
+  const bool idle = std::exchange(frames_before_, frames) == frames;
+  return ready() && (idle || render_loop_.still_for() >= still_period);
+}
+
+Result<SceneThumbnails::File> SessionHost::scene_thumbnail(const std::string& scene) {
+  return thumbnails_.get(scene);
+}
+
+/// In a session of its own, which opens the scene as any other does.
+void SessionHost::render_thumbnail(const std::string& scene, SceneThumbnails::Rendered done) {
+  protocol::SessionCreate request;
+  request.scene = scene;
+  request.width = thumbnail_width;
+  request.height = thumbnail_height;
+  request.idle_timeout = thumbnail_timeout;
+  create_session(request, {}, [this, done](const Result<std::shared_ptr<Session>>& created) {
+    if (!created) return done(created.error());
+    const std::shared_ptr<Session> session = *created;
+    CaptureRequest capture{.format = protocol::ImageFormat::jpeg, .samples = thumbnail_samples};
+    capture.done = [this, done, weak = std::weak_ptr(session)](Result<Capture> result) {
+      const auto rendered = weak.lock();
+      if (rendered && !rendered->ended()) {
+        (void)sessions_.close(rendered->name(), "its thumbnail was rendered");
+      }
+      if (!result) return done(result.error());
+      done(std::move(result->file));
+    };
+    const auto accepted = session->captures().request_capture(std::move(capture));
+    if (accepted) return;
+    if (!session->ended()) (void)sessions_.close(session->name(), accepted.error().message);
+    done(accepted.error());
+  });
 }
 
 SessionHost::~SessionHost() {

@@ -14,6 +14,7 @@
 #include "session/library/environment_library.hpp"
 #include "session/library/scene_catalogue.hpp"
 #include "session/library/scene_loader.hpp"
+#include "session/library/scene_thumbnails.hpp"
 #include "session/rendering/render_loop.hpp"
 #include "session/session_registry.hpp"
 
@@ -31,6 +32,7 @@ struct HostOptions {
   std::optional<std::filesystem::path> environment;      // for every scene, instead of its own
   scene::ImportLimits import_limits;
   std::uint64_t scene_cache_bytes = 1ull << 30;
+  std::filesystem::path thumbnail_folder;  // of scenes; empty: in memory
   protocol::DispatchLimits dispatch;
   /// Largest scene that clients may send; 0: none.
   std::uint64_t max_upload_bytes = 0;
@@ -57,6 +59,8 @@ class SessionHost {
   SessionRegistry& sessions() { return sessions_; }
   const SessionRegistry& sessions() const { return sessions_; }
   EnvironmentLibrary& environments() { return environments_; }
+  /// The small image of a scene; see SceneThumbnails::get.
+  protocol::Result<SceneThumbnails::File> scene_thumbnail(const std::string& scene);
   /// Null: there are none.
   jobs::JobQueue* jobs() const { return options_.jobs; }
 
@@ -86,7 +90,10 @@ class SessionHost {
   RenderTotals render_totals() const { return render_loop_.totals(); }
 
  private:
-  void close_idle_sessions();
+  void work_when_idle();
+  Clock::duration do_idle_work();
+  bool is_idle();
+  void render_thumbnail(const std::string& scene, SceneThumbnails::Rendered done);
   void follow_jobs();
   void fail_creation(const std::shared_ptr<Session>& session, const protocol::Error& why,
                      const Created& done);
@@ -99,6 +106,8 @@ class SessionHost {
   protocol::Dispatcher dispatcher_;
   SceneLoader loader_;
   EnvironmentLibrary environments_;
+  SceneThumbnails thumbnails_;
+  std::uint64_t frames_before_ = 0;  // of all sessions, when is_idle() was asked last
   WakeEvent idle_check_;
   std::atomic<bool> stopping_ = false;
   std::thread idle_thread_;

@@ -31,7 +31,7 @@ void main() {
   if (texel == 0u) {
     ray_count = full_stream(ground_side * ground_side * ground_rays, ray_count.blending);
   }
-  uint first = pcg3d(uvec3(texel, frame.seed, 0u)).x;
+  uint first = first_ground_light(texel);
   for (uint i = 0u; i < ground_rays; ++i) {
     uint number = frame.sample_index * ground_rays + i;
     GroundLight light = ground_light[(first + number * ground_light_step) % ground_lights];

@@ -29,6 +29,12 @@ struct GroundLight {
   float padding0;
 };
 
+// The light that a texel visits first: others around it begin at others, as evenly spread as the
+// sequence R2 (Roberts 2018) makes them, so that the mean of a few texels knows all light.
+SHARED_FUNCTION uint first_ground_light(uint texel) {
+  return (texel % ground_side * 773u + texel / ground_side * 583u) % ground_lights;
+}
+
 // Luminance that has arrived, and that would have arrived without the scene.
 struct GroundTexel {
   float arrived;

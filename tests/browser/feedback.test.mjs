@@ -67,6 +67,22 @@ stage.test("the list of buffers follows the settings", async () => {
   await eventually(reflections, "a list with reflections");
 });
 
+stage.test("the gallery of buffers has one sample of each at once, and refines them", async () => {
+  const { page } = await stage.watch();
+  const most = (max_samples) =>
+    stage.server.call("settings.patch", { patch: { accumulation: { max_samples, by_noise: false } } });
+  await most(65_536);
+  await openTab(page, "inspect");
+  await page.getByRole("button", { name: "Show thumbnails of all buffers" }).click();
+  const tiles = await page.locator("#buffer-gallery .tile").count();
+  const images = (samples) => page.locator(`#buffer-gallery img[data-samples="${samples}"]`);
+  await eventually(async () => (await images("1").count()) === tiles, "an image of each", 120_000);
+  await screenshot(page, "buffer_gallery");
+  assert.equal(await page.evaluate(() => window.seen.frame.final), false, "it has converged");
+  await most(2);
+  await eventually(async () => (await images("all").count()) === tiles, "better ones", 120_000);
+});
+
 stage.test("the first visit tells how to move, until the view is moved", async () => {
   const context = await stage.context({ firstVisit: true });
   const { page } = await stage.watch({ context });

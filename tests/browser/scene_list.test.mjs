@@ -1,11 +1,23 @@
 // The list of scenes: search, favourites, and what survives a change of scene.
 
 import assert from "node:assert/strict";
+import { mkdtempSync, rmSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after } from "node:test";
 import { seriousFindings } from "./harness/axe.mjs";
 import { eventually, firstFrame, screenshot } from "./harness/browser.mjs";
 import { Stage } from "./harness/stage.mjs";
 
 const stage = new Stage({ view: { viewport: { width: 900, height: 700 } } });
+
+// A server that has no thumbnails yet.
+const cache = mkdtempSync(join(tmpdir(), "heliograph-cache-"));
+after(() => rmSync(cache, { recursive: true, force: true }));
+const fresh = new Stage({
+  view: { viewport: { width: 1280, height: 720 } },
+  variables: { XDG_CACHE_HOME: cache },
+});
 
 const namesIn = (page) =>
   page
@@ -65,3 +77,42 @@ stage.test("the chosen environment stays when another scene is loaded", async ()
   assert.equal(await chosen(), "white");
   assert.equal(await environment.inputValue(), "white");
 });
+
+fresh.test(
+  "the server renders thumbnails of its scenes while it is idle, and keeps them",
+  async () => {
+    const { page } = await fresh.watch();
+    await fresh.server.call("animation.play", { clip: "moving_objects_light" });
+    await page.waitForFunction(() => window.seen.frame && !window.seen.frame.final);
+    await page.getByRole("button", { name: "Show thumbnails of all scenes" }).click();
+    const tile = page.locator(".tile", { hasText: "shadow_objects" });
+    await tile.waitFor();
+    assert.equal(await tile.getAttribute("aria-pressed"), "true");
+    const drawn = () =>
+      page.evaluate(() => Object.values(window.seen.drawn).reduce((sum, count) => sum + count, 0));
+    const before = await drawn();
+    await eventually(async () => (await drawn()) > before + 8, "moving frames", 60_000);
+    const { sessions } = await fresh.server.call("session.list");
+    assert.equal(sessions.length, 1, "previews were rendered during an animation");
+
+    await fresh.server.call("animation.pause");
+    await tile.locator("img").waitFor({ timeout: 60_000 });
+    const missing = page.locator(".tile", { hasText: "mirror" }).locator("img");
+    await missing.waitFor({ timeout: 60_000 });
+    assert.ok(await missing.evaluate((image) => image.naturalWidth >= 200));
+    await page.locator(".tile", { hasText: "furnace" }).locator("img").waitFor({ timeout: 60_000 });
+    await screenshot(page, "scene_gallery");
+    assert.equal((await fresh.server.call("scene.list")).current, "shadow_objects");
+    // The server keeps them: another browser has them at once, while a clip plays.
+    await fresh.server.call("animation.play", { clip: "moving_objects_light" });
+    const other = await fresh.watch();
+    await other.page.getByRole("button", { name: "Show thumbnails of all scenes" }).click();
+    const kept = other.page.locator(".tile", { hasText: "mirror" }).locator("img");
+    await kept.waitFor({ timeout: 20_000 });
+    assert.deepEqual(
+      await kept.evaluate((image) => [image.naturalWidth, image.naturalHeight]),
+      [240, 135],
+    );
+    await fresh.server.call("animation.pause");
+  },
+);

@@ -232,37 +232,3 @@ stage.test("an unknown setting gets a control", async () => {
   await page.locator(".toast-text").waitFor({ timeout: 20_000 });
   await screenshot(page, "unknown_setting");
 });
-
-stage.test(
-  "the gallery shows thumbnails and renders missing ones while the server is idle",
-  async () => {
-    const { page } = await stage.watch({ viewport: { width: 1280, height: 720 } });
-    await stage.server.call("animation.play", { clip: "moving_objects_light" });
-    await page.waitForFunction(() => window.seen.frame && !window.seen.frame.final);
-    await page.getByRole("button", { name: "Show thumbnails of all scenes" }).click();
-    const tile = page.locator(".tile", { hasText: "shadow_objects" });
-    await tile.waitFor();
-    assert.equal(await tile.getAttribute("aria-pressed"), "true");
-    const drawn = () =>
-      page.evaluate(() => Object.values(window.seen.drawn).reduce((sum, count) => sum + count, 0));
-    const before = await drawn();
-    await eventually(async () => (await drawn()) > before + 8, "moving frames", 60_000);
-    const requests = () => page.evaluate(() => window.seen.sent["session.create"] ?? 0);
-    assert.equal(await requests(), 0, "previews were rendered during an animation");
-
-    await stage.server.call("animation.pause");
-    await tile.locator("img").waitFor({ timeout: 60_000 });
-    const missing = page.locator(".tile", { hasText: "mirror" }).locator("img");
-    await missing.waitFor({ timeout: 60_000 });
-    assert.ok(await missing.evaluate((image) => image.naturalWidth >= 200));
-    await page.locator(".tile", { hasText: "furnace" }).locator("img").waitFor({ timeout: 60_000 });
-    await screenshot(page, "scene_gallery");
-    assert.equal((await stage.server.call("scene.list")).current, "shadow_objects");
-    const created = await requests();
-    await page.reload();
-    await firstFrame(page);
-    await page.getByRole("button", { name: "Show thumbnails of all scenes" }).click();
-    await missing.waitFor();
-    assert.ok(created >= 2, `${created} previews were rendered`);
-  },
-);

@@ -6,6 +6,7 @@ import {
   dragView,
   eventually,
   firstFrame,
+  ownErrors,
   viewScreenshot,
   staticCamera,
   screenshot,
@@ -188,7 +189,7 @@ stage.test("without OffscreenCanvas the page draws the frames", async () => {
 });
 
 stage.test(
-  "after a restart of the server the page restores scene, settings and camera",
+  "after a restart of the server the page restores scene, settings, camera and bookmarks",
   async () => {
     const { page, pageErrors } = await stage.watch({ expectErrors: true });
     await stage.server.call("settings.patch", { patch: { exposure: { compensation: 0.75 } } });
@@ -197,8 +198,10 @@ stage.test(
     await page.waitForFunction(() => window.seen.received["lights.changed"] > 0);
     await dragView(page, { x: 300, y: 300 }, { x: 520, y: 360 });
     const { eye } = await staticCamera(page, stage.server);
+    await page.keyboard.press("b");
+    await page.getByRole("button", { name: "View 1", exact: true }).waitFor();
 
-    assert.deepEqual(pageErrors, []);
+    assert.deepEqual(ownErrors(pageErrors), []);
     await stage.server.stop();
     await page.waitForSelector('#pill[data-state="lost"]', { timeout: 20_000 });
     await page.getByText("Connection lost").waitFor();
@@ -212,6 +215,12 @@ stage.test(
     assert.equal((await stage.server.call("scene.list")).current, "shadow_objects");
     assert.equal(await stage.server.setting("exposure.compensation"), 0.75);
     assert.equal((await stage.server.call("lights.list")).lights[0].intensity, 2.25);
+    const { bookmarks } = await eventually(async () => {
+      const list = await stage.server.call("bookmarks.list");
+      return list.bookmarks.length > 0 && list;
+    }, "the bookmark to be restored");
+    assert.equal(bookmarks[0].name, "View 1");
+    assert.ok(distance(bookmarks[0].eye, eye) < 1e-3, `${bookmarks[0].eye}`);
     await firstFrame(page);
     await settle(page, stage.server);
     await screenshot(page, "connection_back");

@@ -18,7 +18,8 @@ namespace {
 constexpr std::string_view sessions_prefix = "/api/v1/sessions/";
 constexpr std::string_view scenes_prefix = "/api/v1/scenes/";
 constexpr std::string_view environments_prefix = "/api/v1/environments/";
-constexpr std::string_view thumbnail_suffix = "/thumbnail.png";
+constexpr std::string_view environment_suffix = "/thumbnail.png";
+constexpr std::string_view scene_suffix = "/thumbnail.jpg";
 constexpr std::string_view viewer_module = "/heliograph-viewer.js";
 
 HttpResponse with_header(HttpResponse response, std::string name, std::string value) {
@@ -74,11 +75,12 @@ std::optional<ImageAddress> image_address(std::string_view path) {
 }
 
 /// "/api/v1/environments/sky/thumbnail.png" -> sky
-std::optional<std::string_view> thumbnail_of(std::string_view path) {
-  if (!path.starts_with(environments_prefix) || !path.ends_with(thumbnail_suffix)) return {};
-  path.remove_prefix(environments_prefix.size());
-  if (path.size() <= thumbnail_suffix.size()) return {};
-  return path.substr(0, path.size() - thumbnail_suffix.size());
+std::optional<std::string_view> between(std::string_view prefix, std::string_view path,
+                                        std::string_view suffix) {
+  if (!path.starts_with(prefix) || !path.ends_with(suffix)) return {};
+  path.remove_prefix(prefix.size());
+  if (path.size() <= suffix.size()) return {};
+  return path.substr(0, path.size() - suffix.size());
 }
 
 /// The value of frame-ancestors. @throws std::invalid_argument
@@ -203,9 +205,10 @@ void Router::handle(const HttpRequest& request, const Pending& pending, Reply re
     return reply(answer_job(request, host_.jobs(), admission.role));
   }
   const bool reads = request.method == "GET" || request.method == "HEAD";
-  if (const auto file = thumbnail_of(request.path); file && reads) {
-    return environment_thumbnail(*file, std::move(reply));
-  }
+  const auto environment = between(environments_prefix, request.path, environment_suffix);
+  if (environment && reads) return environment_thumbnail(*environment, std::move(reply));
+  const auto scene = between(scenes_prefix, request.path, scene_suffix);
+  if (scene && reads) return reply(scene_thumbnail(*scene));
   if (!options_.uploads.empty() && upload_address(request.path)) {
     return reply(method_not_allowed("PUT"));
   }
@@ -234,6 +237,17 @@ void Router::environment_thumbnail(std::string_view file, Reply reply) const {
                                           .body = {png->begin(), png->end()},
                                           .headers = {{"Cache-Control", "private, max-age=60"}}});
                                  });
+}
+
+HttpResponse Router::scene_thumbnail(std::string_view scene) const {
+  const auto image = host_.scene_thumbnail(std::string(scene));
+  if (!image && image.error().code == protocol::ErrorCode::not_ready) {
+    return with_header(text_response(202, image.error().message), "Retry-After", "1");
+  }
+  if (!image) return error_response(image.error());
+  return {.content_type = "image/jpeg",
+          .body = {image->begin(), image->end()},
+          .headers = {{"Cache-Control", "private, max-age=60"}}};
 }
 
 HttpResponse Router::answer_metrics_listener(const HttpRequest& request) const {

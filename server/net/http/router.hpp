@@ -69,6 +69,7 @@ class Router {
   HttpResponse metrics() const;
   void call(const HttpRequest& request, Role role, const Pending& pending, Reply reply) const;
   void environment_thumbnail(std::string_view file, Reply reply) const;
+  HttpResponse scene_thumbnail(std::string_view scene) const;
   void image(const HttpRequest& request, const ImageAddress& address, Role role,
              const Pending& pending, Reply reply) const;
 

@@ -121,7 +121,9 @@ protocol::Result<std::optional<SurfacePoint>> surface_at(const CompiledFrame& co
   const bool orthographic = (frame.flags & shared::frame_orthographic) != 0;
   const glm::vec4 encoded = texel(normals->whole, pixel);
   glm::vec3 normal = octahedral_decode({encoded.z, encoded.w});
-  const glm::vec2 centre = (glm::vec2(pixel) + 0.5f) / glm::vec2(frame.extent);
+  // The histories may have been rescaled since the frame: their size counts, not the frame's.
+  const glm::vec2 drawn(instances->drawn.width, instances->drawn.height);
+  const glm::vec2 centre = (glm::vec2(pixel) + 0.5f) / drawn;
   const glm::vec2 jitter(frame.unproject.z, frame.unproject.w);
   const glm::vec3 sample = view_ray(frame, centre, jitter).at(view_z);
   const glm::mat3 to_view = glm::transpose(glm::mat3(frame.inverse_view));

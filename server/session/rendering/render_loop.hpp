@@ -46,7 +46,9 @@ class RenderLoop {
   void stop();
   RenderTotals totals() const { return measurements_.totals(); }
   /// Whether the image of a session moves, or did until recently.
-  bool images_move() const { return Clock::now() < moved_at_.load() + motion_end_delay; }
+  bool images_move() const { return still_for() < motion_end_delay; }
+  /// Since the image of a session has moved last.
+  Clock::duration still_for() const { return Clock::now() - moved_at_.load(); }
 
  private:
   /// From one change to the next of a camera that a viewer moves.
@@ -85,7 +87,7 @@ class RenderLoop {
   std::atomic<bool> device_ready_ = true;
   std::atomic<bool> loss_reported_ = false;
   std::atomic<std::uint64_t> device_losses_ = 0;
-  std::atomic<Clock::time_point> moved_at_ = Clock::time_point::min() + motion_end_delay;
+  std::atomic<Clock::time_point> moved_at_ = Clock::time_point();
   RetryBackoff retry_backoff_;  // of the render thread, like the next ones
   Clock::time_point retry_at_;
   std::optional<Clock::time_point> held_back_until_;

@@ -48,6 +48,22 @@ export async function openViewer(context, url) {
   return { page, context, pageErrors, response };
 }
 
+/** Of "body {}", a style that Playwright adds to Firefox's pages before a screenshot. */
+const driverStyle = "sha256-YjaKGiklmzC6wjXA513HAMmzus8VE61XCOT+SmwNZWA=";
+
+/**
+ * What the page itself has reported: not the violations that Playwright's style is, each of which
+ * comes as an event and as a message with the style's hash.
+ */
+export function ownErrors(pageErrors) {
+  const isDriver = (text) => text.includes(driverStyle);
+  let events = pageErrors.filter(isDriver).length;
+  return pageErrors.filter((text) => {
+    if (isDriver(text)) return false;
+    return text !== "CSP: style-src-elem inline" || --events < 0;
+  });
+}
+
 /** Waits until the page is connected and has drawn a frame. */
 export async function firstFrame(page, timeout = 120_000) {
   await page.waitForSelector('#pill[data-state="live"]', { timeout });
@@ -90,7 +106,8 @@ export async function staticCamera(page, server) {
       new Promise((resolve) => {
         let [poses, unchanged] = [-1, 0];
         const check = () => {
-          unchanged = window.seen.poses === poses ? unchanged + 1 : 0;
+          const { cameraCalls } = window.seen;
+          unchanged = window.seen.poses === poses && cameraCalls === 0 ? unchanged + 1 : 0;
           poses = window.seen.poses;
           if (unchanged >= staticFrames) resolve();
           else requestAnimationFrame(check);

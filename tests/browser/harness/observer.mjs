@@ -19,6 +19,8 @@ function observe() {
     poses: 0,
     pose: null,
     camera: null,
+    /** Number of calls that choose a camera and have no answer yet. */
+    cameraCalls: 0,
     /** Number of calls sent and notifications received, by method. */
     sent: {},
     received: {},
@@ -30,10 +32,17 @@ function observe() {
   let stream = null; // the first worker; others belong to comparisons
   const calls = new Map(); // methods of calls without an answer, by id
 
+  const countCameraCalls = () => {
+    const all = [...calls.values()];
+    seen.cameraCalls = all.filter((method) => /^camera\.(set|fit)$/.test(method)).length;
+  };
   const sent = (text) => {
     const { id, method, params } = JSON.parse(text);
     count(seen.sent, method);
-    if (id !== undefined) calls.set(id, method);
+    if (id !== undefined) {
+      calls.set(id, method);
+      countCameraCalls();
+    }
     if (method === "camera.set" && params.eye) {
       seen.poses += 1;
       seen.pose = params;
@@ -47,6 +56,7 @@ function observe() {
       const id = Number(/"id":(\d+)/.exec(start)?.[1]);
       if (calls.has(id)) count(seen.answered, calls.get(id));
       calls.delete(id);
+      countCameraCalls();
       return;
     }
     const { method, params } = JSON.parse(text);

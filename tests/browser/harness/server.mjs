@@ -58,13 +58,16 @@ function headersFor(args) {
   return args.includes("--token") ? { authorization: `Bearer ${token}` } : {};
 }
 
-/** Port 0 selects a free port. The scenes are those of the tests unless `args` names others. Resolves when the server has printed its URL. */
-export function startServer(port = 0, args = []) {
+/**
+ * Port 0 selects a free port. The scenes are those of the tests unless `args` names others;
+ * `variables` are added to the environment. Resolves when the server has printed its URL.
+ */
+export function startServer(port = 0, args = [], variables = {}) {
   const roots = args.includes("--scene-root") ? [] : ["--scene-root", sceneRoot];
   const child = spawn(
     serverBinary,
     ["serve", "--port", String(port), ...roots, ...args],
-    { stdio: ["ignore", "pipe", "pipe"] },
+    { stdio: ["ignore", "pipe", "pipe"], env: { ...process.env, ...variables } },
   );
   const server = new Server(child);
   server.headers = headersFor(args);

@@ -3,7 +3,7 @@
 
 import assert from "node:assert/strict";
 import nodeTest, { after } from "node:test";
-import { firstFrame, launchBrowser, openViewer, screenshot } from "./browser.mjs";
+import { firstFrame, launchBrowser, openViewer, ownErrors, screenshot } from "./browser.mjs";
 import { startServer } from "./server.mjs";
 
 let browser = null; // all stages of a file share it
@@ -13,8 +13,8 @@ export class Stage {
   /**
    * The server loads `scene`, unless it is null, and has `serverArguments`; a frame is converged after `samples`, or
    * the server's default if null. Pages ask for frames of this `resolution`, half of their own unless
-   * given, which take less time to render. `view` has options of every page's context. `prepare` runs once
-   * with the page that tests share.
+   * given, which take less time to render. `view` has options of every page's context, `variables` some
+   * of the server's environment. `prepare` runs once with the page that tests share.
    */
   constructor({
     scene = "shadow_objects",
@@ -22,6 +22,7 @@ export class Stage {
     resolution = "half",
     serverArguments = [],
     view = {},
+    variables = {},
     prepare = async () => {},
   } = {}) {
     this.serverArguments = [...serverArguments, ...(scene ? ["--scene", scene] : [])];
@@ -33,6 +34,7 @@ export class Stage {
     this.samples = samples;
     this.resolution = resolution;
     this.view = view;
+    this.variables = variables;
     this.prepare = prepare;
     this.contexts = new Set();
     this.viewers = [];
@@ -119,17 +121,18 @@ export class Stage {
   async restartServer(args) {
     const { port } = this.server;
     await this.server.stop();
-    this.server = await startServer(port, args);
+    this.server = await startServer(port, args, this.variables);
   }
 
   async begin() {
     browser ??= await launchBrowser();
-    this.server ??= await startServer(0, this.serverArguments);
+    this.server ??= await startServer(0, this.serverArguments, this.variables);
   }
 
   checkPageErrors() {
     for (const { pageErrors, expectErrors } of this.viewers) {
-      if (!expectErrors) assert.deepEqual(pageErrors, [], "the page reported errors");
+      if (expectErrors) continue;
+      assert.deepEqual(ownErrors(pageErrors), [], "the page reported errors");
     }
   }
 

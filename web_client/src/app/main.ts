@@ -16,7 +16,6 @@ import { Toasts } from "../overlay/toasts.ts";
 import { mountTransport } from "../overlay/transport.ts";
 import { mountUpload, uploadFile } from "../overlay/upload.ts";
 import { mountPanel } from "../panel/panel.ts";
-import { mountThumbnails } from "../previews/thumbnails.ts";
 import { viewIn } from "../session/view_link.ts";
 import { Viewer } from "../session/viewer.ts";
 import { fitBeside, focusOn } from "../view/camera.ts";
@@ -185,7 +184,6 @@ function main(): void {
   };
   addEventListener("hashchange", openLink);
   openLink();
-  mountThumbnails(viewer);
   reportToEmbeddingPage(viewer);
   mountUpload(viewer, document.body, toasts);
   viewer.connection.open();

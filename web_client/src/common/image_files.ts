@@ -29,6 +29,21 @@ export async function thumbnailUrl(image: Blob, width: number): Promise<string> 
   return canvas.toDataURL("image/jpeg", 0.8);
 }
 
+/** The frame as a small image of 16:9 around its centre, in a data URL. */
+export function cropped(frame: ImageBitmap, width: number): string | null {
+  const canvas = document.createElement("canvas");
+  canvas.width = width;
+  canvas.height = Math.round((width * 9) / 16);
+  const context = canvas.getContext("2d");
+  if (!context) return null;
+  const scale = Math.min(frame.width / canvas.width, frame.height / canvas.height);
+  const [wide, high] = [canvas.width * scale, canvas.height * scale];
+  const [left, top] = [(frame.width - wide) / 2, (frame.height - high) / 2];
+  context.imageSmoothingQuality = "high";
+  context.drawImage(frame, left, top, wide, high, 0, 0, canvas.width, canvas.height);
+  return canvas.toDataURL("image/jpeg", 0.75);
+}
+
 /** Downloads a file. */
 export function saveFile(content: Blob, name: string): void {
   const url = URL.createObjectURL(content);

@@ -1,5 +1,6 @@
-// Records the frames as MP4, or as WebM where the browser writes no MP4. The visible canvas belongs to the stream worker, so every frame is
-// copied to another canvas, which the recorder captures.
+// Records the frames as MP4, or as WebM where the browser writes no MP4, as Firefox. The visible
+// canvas belongs to the stream worker, so every frame is copied to another canvas, which the
+// recorder captures.
 
 import { Signal } from "../common/signal.ts";
 import type { Viewer } from "../session/viewer.ts";

@@ -1,35 +1,25 @@
-// Renders thumbnails of scenes that this browser has not shown yet: one after another, each in a
-// session of its own, and only while the server is idle.
+// Thumbnails of the server's scenes, which it renders while it has nothing else to do.
 
-import type { SceneList } from "heliograph/messages.ts";
 import { thumbnailUrl } from "../common/image_files.ts";
 import type { Viewer } from "../session/viewer.ts";
-import { storeThumbnail, thumbnailOf } from "./thumbnails.ts";
+import { storeThumbnail } from "./thumbnails.ts";
 
-const size = { width: 240, height: 135 };
-const samples = 8;
-const pollMs = 700;
-const createTimeoutMs = 60_000;
-
-/** Larger files take too long to load for a thumbnail. */
-const maxFileBytes = 128 * 1024 * 1024;
+const width = 240;
+const pollMs = 1500;
+const later = 202;
 
 export class ScenePreviews {
   private readonly viewer: Viewer;
-  /** Scenes that could not be rendered; not requested again. */
-  private readonly failed = new Set<string>();
+  /** Scenes whose thumbnail this page has, or that have none. */
+  private readonly settled = new Set<string>();
   private active = false;
   private running = false;
-  private interruption: AbortController | null = null;
 
   constructor(viewer: Viewer) {
     this.viewer = viewer;
-    viewer.frame.watch((frame) => {
-      if (frame && !frame.final) this.interruption?.abort();
-    });
   }
 
-  /** Renders the missing thumbnails until `stop`. */
+  /** Fetches thumbnails as they come, until `stop`. */
   start(): void {
     this.active = true;
     if (!this.running) void this.run();
@@ -37,72 +27,36 @@ export class ScenePreviews {
 
   stop(): void {
     this.active = false;
-    this.interruption?.abort();
   }
 
   private async run(): Promise<void> {
     this.running = true;
-    for (let scene = this.next(); this.active && scene; scene = this.next()) {
-      if (await this.serverIsIdle()) await this.renderPreview(scene);
-      else await new Promise((resolve) => setTimeout(resolve, pollMs));
+    while (this.active && this.missing().length > 0) {
+      for (const scene of this.missing()) {
+        if (this.active && (await this.fetchOne(scene))) this.settled.add(scene);
+      }
+      if (this.missing().length > 0) await new Promise((next) => setTimeout(next, pollMs));
     }
     this.running = false;
   }
 
-  private next(): string | undefined {
-    const { scenes }: SceneList = this.viewer.scenes.value;
-    return scenes.find(
-      ({ name, bytes }) => bytes <= maxFileBytes && !this.failed.has(name) && !thumbnailOf(name),
-    )?.name;
+  private missing(): string[] {
+    const { scenes } = this.viewer.scenes.value;
+    return scenes.map(({ name }) => name).filter((name) => !this.settled.has(name));
   }
 
-  /** Nothing moves in this session, and no other session has viewers. */
-  private async serverIsIdle(): Promise<boolean> {
-    const { viewer } = this;
-    const busy = viewer.loading.current.value || viewer.restoring.value || viewer.animation.value?.playing;
-    if (document.hidden || !viewer.hello || busy || !viewer.frame.value?.final) return false;
-    if (
-      !viewer.capabilities.has("session.create") ||
-      viewer.membership.controlState.value.kind === "read_only"
-    ) {
-      this.active = false;
-      return false;
-    }
+  /** False: it comes later. */
+  private async fetchOne(scene: string): Promise<boolean> {
+    if (document.hidden || !this.viewer.hello) return false;
+    const path = scene.split("/").map(encodeURIComponent).join("/");
     try {
-      const { sessions } = await viewer.rpc.request("session.list");
-      const own = viewer.membership.name;
-      return sessions.every(({ name, viewers }) => name === own || viewers.length === 0);
+      const url = this.viewer.connection.address.url(`api/v1/scenes/${path}/thumbnail.jpg`);
+      const response = await fetch(url);
+      if (response.status === later) return false;
+      if (response.ok) storeThumbnail(scene, await thumbnailUrl(await response.blob(), width));
+      return true;
     } catch {
-      return false; // the connection is lost; the next one tries again
+      return false; // the connection is lost; a later one tries again
     }
-  }
-
-  private async renderPreview(scene: string): Promise<void> {
-    const interruption = new AbortController();
-    this.interruption = interruption;
-    let session: string | null = null;
-    try {
-      const settings = { accumulation: { max_samples: samples } };
-      const params = { scene, settings, idle_timeout: 30, ...size };
-      const { rpc } = this.viewer;
-      session = (await rpc.request("session.create", params, createTimeoutMs)).name;
-      const url = this.viewer.connection.address.url(`api/v1/sessions/${session}/frame.jpg`);
-      url.searchParams.set("samples", String(samples));
-      const { signal } = interruption;
-      const response = await fetch(url, { signal });
-      if (!response.ok) throw new Error(await response.text());
-      storeThumbnail(scene, await thumbnailUrl(await response.blob(), size.width));
-    } catch {
-      // Interrupted previews are rendered later; scenes that fail stay without one.
-      if (!interruption.signal.aborted) this.failed.add(scene);
-    } finally {
-      this.interruption = null;
-      if (session) await this.close(session);
-    }
-  }
-
-  private async close(session: string): Promise<void> {
-    // If this fails, the session ends by its idle timeout.
-    await this.viewer.rpc.request("session.close", { session }).catch(() => {});
   }
 }

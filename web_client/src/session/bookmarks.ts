@@ -12,6 +12,8 @@ interface BookmarksHost {
   rpc: RpcPeer;
   capabilities: ServerCapabilities;
   scene: Signal<SceneInfo | null>;
+  /** Whether what the page showed is still to be restored in another session. */
+  isRestoring(): boolean;
   attempt(action: () => Promise<unknown>): Promise<void>;
 }
 
@@ -27,7 +29,9 @@ export class Bookmarks {
       if (scene?.name !== this.scene && scene) void this.read();
     });
     // The first scene may arrive before the list of methods.
-    host.capabilities.methods.watch(() => void this.read());
+    host.capabilities.methods.watch(() => {
+      if (host.capabilities.has("bookmarks.list") && !host.isRestoring()) void this.read();
+    });
   }
 
   take({ scene, bookmarks }: BookmarkList): void {

@@ -62,9 +62,9 @@ export class FrameQueries {
     return this.host.rpc.request("frame.capture", params, captureTimeoutMs);
   }
 
-  /** A buffer of the frame as a small image, in a data URL. */
-  async thumbnail(buffer: string, width: number): Promise<string> {
+  /** A buffer of the frame as a small image, in a data URL; by default converged. */
+  async thumbnail(buffer: string, width: number, samples?: number): Promise<string> {
     const format = this.host.capabilities.captureFormats.value.has("jpeg") ? "jpeg" : "png";
-    return thumbnailUrl(captureBlob(await this.capture(buffer, format)), width);
+    return thumbnailUrl(captureBlob(await this.capture(buffer, format, samples)), width);
   }
 }

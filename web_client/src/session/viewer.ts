@@ -168,6 +168,7 @@ export class Viewer {
       rpc: this.rpc,
       capabilities: this.capabilities,
       scene: this.scene,
+      isRestoring: () => this.viewRestore.pending !== null,
       attempt: (action) => this.attempt(action),
     });
     this.queries = new FrameQueries({

@@ -48,7 +48,7 @@ shared::Ray ray_toward(const shared::GroundLight& light, const glm::vec3& origin
 
 void rays_of_texel(const GroundRaysJob& job, std::uint32_t texel) {
   const shared::FrameConstants& frame = job.frame;
-  const std::uint32_t first = pcg3d({texel, frame.seed, 0u}).x;
+  const std::uint32_t first = shared::first_ground_light(texel);
   const glm::vec2 corner(texel % shared::ground_side, texel / shared::ground_side);
   for (std::uint32_t i = 0; i < shared::ground_rays; ++i) {
     const std::uint32_t number = frame.sample_index * shared::ground_rays + i;

@@ -39,15 +39,23 @@ export function createBufferFields(viewer: Viewer): HTMLElement[] {
     const shown = viewer.settings.value(bufferSetting);
     for (const [name, tile] of tiles) tile.setAttribute("aria-pressed", String(name === shown));
   };
-  /** One capture after another, so that thumbnails do not block the renderer. */
+  /**
+   * One capture after another, so that thumbnails do not block the renderer: of one sample, which
+   * is there at once, then of the converged image.
+   */
   const loadThumbnails = async (): Promise<void> => {
     const own = ++generation;
-    for (const [name, tile] of [...tiles]) {
-      if (gallery.hidden || own !== generation || !viewer.hello) return;
-      const source = await viewer.queries.thumbnail(name, thumbnailWidth).catch(() => null);
-      const image = element("img", { class: "tile-image", alt: "" });
-      if (source) image.src = source;
-      tile.firstElementChild?.replaceWith(image);
+    for (const samples of [1, undefined]) {
+      for (const [name, tile] of [...tiles]) {
+        if (gallery.hidden || own !== generation || !viewer.hello) return;
+        const source = await viewer.queries
+          .thumbnail(name, thumbnailWidth, samples)
+          .catch(() => null);
+        if (!source) continue;
+        const image = element("img", { class: "tile-image", alt: "", src: source });
+        image.dataset.samples = samples === undefined ? "all" : String(samples);
+        tile.firstElementChild?.replaceWith(image);
+      }
     }
   };
   const toggle = button("Show thumbnails of all buffers", "grid", () => {

@@ -1,7 +1,7 @@
 // The bookmarks of the scene: a thumbnail and a name each, which can be changed.
 
 import type { Bookmark } from "heliograph/messages.ts";
-import { cropped } from "../../previews/thumbnails.ts";
+import { cropped } from "../../common/image_files.ts";
 import { maxNameLength } from "../../session/bookmarks.ts";
 import { describeControl } from "../../session/control_state.ts";
 import type { Viewer } from "../../session/viewer.ts";

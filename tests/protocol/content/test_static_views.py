@@ -1,0 +1,78 @@
+"""A view that has come to rest gets better with every sample, in six scenes as they open."""
+
+import base64
+import os
+import unittest
+from pathlib import Path
+
+from harness.images import decode_png
+from harness.server import Server
+
+try:
+    import numpy
+    from skimage.metrics import structural_similarity
+except ImportError:
+    numpy = None
+
+ASSETS = Path(os.environ.get("HELIOGRAPH_TEST_ASSETS", "/nonexistent")) / "gltf"
+# Rooms, of which one is lit by a small surface; models in the studio; lights of the file.
+SCENES = ("CornellBox", "room_godot", "DamagedHelmet", "FlightHelmet/FlightHelmet", "house",
+          "Lights")
+MOVED_FRAMES = 12
+SAMPLES = 48
+TRUE_SAMPLES = 512
+# One frame's pattern of jitter may be a little less lucky than another's.
+TOLERANCE = 0.002
+
+
+@unittest.skipUnless(numpy, "python3-skimage is not installed")
+@unittest.skipUnless(ASSETS.is_dir(), "HELIOGRAPH_TEST_ASSETS has no models")
+class StaticViews(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.server = Server("--set", "accumulation.max_samples=4096", "--scene", SCENES[0],
+                            scenes=str(ASSETS))
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.server.stop()
+
+    def image(self, **parameters):
+        capture = self.server.call("frame.capture", {"format": "png", **parameters})
+        image = decode_png(base64.b64decode(capture["data"], validate=True))
+        pixels = numpy.frombuffer(image.rgb, dtype=numpy.uint8)
+        return pixels.reshape(image.height, image.width, 3)
+
+    def truth(self):
+        """Of other random numbers, and without what the denoiser knows."""
+        self.server.call("settings.patch", {"patch": {"sampling": {"seed": 99}}})
+        image = self.image(samples=TRUE_SAMPLES)
+        self.server.call("settings.patch", {"patch": {"sampling": {"seed": 0}}})
+        return image
+
+    def test_no_sample_makes_it_worse(self):
+        for scene in SCENES:
+            with self.subTest(scene=scene):
+                self.server.call("scene.load", {"name": scene})
+                self.server.call("animation.pause")
+                truth = self.truth()
+                self.server.call("camera.orbit", {"yaw": MOVED_FRAMES})
+                self.server.call("frame.step", {"frames": 4, "dt": 0.03})
+                for _ in range(MOVED_FRAMES):
+                    self.server.call("camera.orbit", {"yaw": -1})
+                    self.server.call("frame.step", {"frames": 1, "dt": 0.03})
+                found = []
+                for _ in range(SAMPLES):
+                    self.server.call("frame.step", {"frames": 1, "dt": 0.03})
+                    found.append(structural_similarity(truth, self.image(), channel_axis=2))
+                self.server.call("frame.run")
+                best = numpy.maximum.accumulate(found)
+                worst = float((best - found).max())
+                print(f"{scene}: from {found[0]:.4f} to {found[-1]:.4f}, at most {worst:.4f} less "
+                      "than before")
+                self.assertLess(worst, TOLERANCE, [round(one, 4) for one in found])
+                self.assertGreaterEqual(found[-1], found[0])
+
+
+if __name__ == "__main__":
+    unittest.main()
