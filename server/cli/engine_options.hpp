@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "cli/options.hpp"
 #include "protocol/settings/settings.hpp"
@@ -8,9 +10,14 @@
 
 namespace heliograph::cli {
 
+/// With all values of --device as one list.
 render::EngineOptions engine_options(const DeviceOptions& options);
-/// The device, set up. A device that is lost meanwhile is set up again, a few times.
+
+/// Every device that is meant, set up. A device that is lost meanwhile is set up again, a few
+/// times.
 /// @throws std::runtime_error
+std::vector<std::unique_ptr<render::Engine>> make_engines(const DeviceOptions& options);
+/// The first of them alone.
 std::unique_ptr<render::Engine> make_engine(const DeviceOptions& options);
 
 /// The defaults with the preset and the "path=value" assignments of the command line.
