@@ -40,6 +40,7 @@ struct SessionInfo {
   ControlMode control = ControlMode::shared;
   std::uint32_t rev = 0;
   double idle_seconds = 0.0;
+  std::uint32_t device = 0;
   std::optional<std::string> follows;
 
   static constexpr auto fields() {
@@ -55,6 +56,8 @@ struct SessionInfo {
         field("idle_seconds", &SessionInfo::idle_seconds,
               "Time since the session last had a viewer, a call or a frame to render.")
             .unit("seconds"),
+        field("device", &SessionInfo::device,
+              "Index of the device that renders it, among the server's devices."),
         field("follows", &SessionInfo::follows,
               "The session whose scene and settings it shows with a camera of its own; absent: it "
               "has its own."),

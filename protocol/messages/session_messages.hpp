@@ -60,12 +60,15 @@ struct DeviceInfo {
   std::string name;
   std::string driver;
   DeviceType type = DeviceType::other;
+  std::uint32_t index = 0;
 
   static constexpr auto fields() {
     return std::tuple{
         field("name", &DeviceInfo::name, "Name of the Vulkan device."),
         field("driver", &DeviceInfo::driver, "Name and version of its driver."),
         field("type", &DeviceInfo::type, "Kind of device."),
+        field("index", &DeviceInfo::index,
+              "Its index among the server's devices, from 0 on; the label `device` of metrics."),
     };
   }
   bool operator==(const DeviceInfo&) const = default;
@@ -121,7 +124,7 @@ struct HelloResult {
     return std::tuple{
         field("protocol", &HelloResult::protocol, "Name and version of the protocol."),
         field("version", &HelloResult::version, "Version of the server."),
-        field("device", &HelloResult::device, "The device that renders."),
+        field("device", &HelloResult::device, "The device that renders the session."),
         field("tracer", &HelloResult::tracer, "The ray tracer in use."),
         field("session", &HelloResult::session, "The session that the viewer is in."),
         field("viewer", &HelloResult::viewer,

@@ -24,6 +24,8 @@ export interface HelloParams {
 export interface HelloDevice {
   /** Name and version of its driver. */
   driver: string;
+  /** Its index among the server's devices, from 0 on; the label `device` of metrics. */
+  index: number;
   /** Name of the Vulkan device. */
   name: string;
   /** Kind of device. */
@@ -59,7 +61,7 @@ export interface Hello {
   codec_reason: string | null;
   /** Codecs of the frames that follow, preferred first. */
   codecs: string[];
-  /** The device that renders. */
+  /** The device that renders the session. */
   device: HelloDevice;
   /**
    * Identifies this run of the server. If it differs after a reconnect, the session state is lost
@@ -132,6 +134,8 @@ export interface ViewerInfo {
 export interface SessionInfo {
   /** Whether all viewers have control (shared) or one viewer (exclusive). */
   control: "shared" | "exclusive";
+  /** Index of the device that renders it, among the server's devices. */
+  device: number;
   /**
    * The session whose scene and settings it shows with a camera of its own; absent: it has its own.
    */

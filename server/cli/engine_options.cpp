@@ -1,5 +1,7 @@
 #include "cli/engine_options.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <cstdlib>
@@ -11,6 +13,7 @@
 #include "protocol/settings/settings_json.hpp"
 #include "render/api/buffer_names.hpp"
 #include "render/api/device_lost.hpp"
+#include "render/api/devices.hpp"
 
 namespace heliograph::cli {
 namespace {
@@ -36,19 +39,12 @@ std::filesystem::path cache_folder() {
   return {};
 }
 
-render::EngineOptions engine_options(const DeviceOptions& options) {
-  return {.device = options.device,
-          .tracer = options.tracer,
-          .validation = std::getenv("HELIOGRAPH_VALIDATION") != nullptr,
-          .cache_folder = cache_folder(),
-          .shader_folder = options.shader_dir,
-          .jpeg = jpeg_encoding(options.gpu_jpeg)};
-}
+namespace {
 
-std::unique_ptr<render::Engine> make_engine(const DeviceOptions& options) {
+std::unique_ptr<render::Engine> make_engine(const render::EngineOptions& options) {
   for (int losses = 1;; ++losses) {
     try {
-      return std::make_unique<render::Engine>(engine_options(options));
+      return std::make_unique<render::Engine>(options);
     } catch (const render::DeviceLost& failure) {
       if (losses == max_losses) {
         throw std::runtime_error("the graphics device was lost " + std::to_string(losses) +
@@ -57,6 +53,32 @@ std::unique_ptr<render::Engine> make_engine(const DeviceOptions& options) {
       spdlog::warn("the device was lost while it was set up; trying again ({})", failure.what());
     }
   }
+}
+
+}  // namespace
+
+render::EngineOptions engine_options(const DeviceOptions& options) {
+  return {.device = fmt::format("{}", fmt::join(options.devices, ",")),
+          .tracer = options.tracer,
+          .validation = std::getenv("HELIOGRAPH_VALIDATION") != nullptr,
+          .cache_folder = cache_folder(),
+          .shader_folder = options.shader_dir,
+          .jpeg = jpeg_encoding(options.gpu_jpeg)};
+}
+
+std::vector<std::unique_ptr<render::Engine>> make_engines(const DeviceOptions& options) {
+  std::vector<std::unique_ptr<render::Engine>> engines;
+  for (const render::EngineOptions& one : render::choose_devices(engine_options(options))) {
+    engines.push_back(make_engine(one));
+  }
+  return engines;
+}
+
+std::unique_ptr<render::Engine> make_engine(const DeviceOptions& options) {
+  render::EngineOptions one = engine_options(options);
+  const std::vector<std::string> names = render::device_names(one.device);
+  one.device = names.empty() ? "" : names.front();
+  return make_engine(render::choose_devices(one).front());
 }
 
 protocol::Settings parse_settings(const SettingsOptions& options) {

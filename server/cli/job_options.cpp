@@ -21,7 +21,7 @@ std::vector<std::string> render_arguments(const ServeOptions& options) {
   const auto add = [&](const char* name, const std::string& value) {
     if (!value.empty()) arguments.insert(arguments.end(), {name, value});
   };
-  add("--device", options.device.device);
+  for (const std::string& device : options.device.devices) add("--device", device);
   add("--tracer", options.device.tracer);
   if (!options.device.shader_dir.empty()) {
     add("--shader-dir", fs::absolute(options.device.shader_dir).string());

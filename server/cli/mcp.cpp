@@ -79,7 +79,7 @@ int run(const McpOptions& options) {
   hosting.session.starts_empty = !scene;
   const std::unique_ptr<render::Engine> engine = make_engine(options.device);
   Answers answers;
-  session::SessionHost host(*engine, hosting);
+  session::SessionHost host({*engine}, hosting);
   if (scene) load_and_wait(host, *scene);
   const protocol::McpServer server(host.dispatcher(), HELIOGRAPH_VERSION);
   for (std::string line; std::getline(std::cin, line);) {

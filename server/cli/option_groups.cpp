@@ -51,7 +51,12 @@ CLI::Validator one_of(const std::vector<std::string>& names) {
 }
 
 void add_device_options(CLI::App& command, DeviceOptions& options) {
-  command.add_option("--device", options.device, "Part of the name of the Vulkan device to use")
+  command
+      .add_option("--device", options.devices,
+                  "Part of the name of the Vulkan device to use; \"serve\" takes several, "
+                  "separated by commas, or all: every GPU; other commands use the first")
+      ->type_name("NAME")
+      ->allow_extra_args(false)
       ->group("Device");
   command.add_option("--tracer", options.tracer, "Ray tracer; see \"heliograph devices\"")
       ->check(one_of(tracer_names()))

@@ -18,7 +18,7 @@ struct LogOptions {
 };
 
 struct DeviceOptions {
-  std::string device;
+  std::vector<std::string> devices;  // as given; device_names() tells them apart
   std::string tracer = "auto";
   std::string shader_dir;  // empty: the embedded shaders
   std::string gpu_jpeg = "off";

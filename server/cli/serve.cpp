@@ -9,6 +9,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "cli/commands.hpp"
 #include "cli/engine_options.hpp"
@@ -16,6 +17,7 @@
 #include "cli/log.hpp"
 #include "cli/scene_roots.hpp"
 #include "net/server.hpp"
+#include "render/api/devices.hpp"
 #include "session/session_host.hpp"
 
 namespace heliograph::cli {
@@ -41,9 +43,15 @@ session::HostOptions host_options(const ServeOptions& options) {
   return result;
 }
 
+bool has_processor(const render::Engines& engines) {
+  return std::ranges::any_of(engines, [](const render::Engine& engine) {
+    return engine.device().type == protocol::DeviceType::cpu;
+  });
+}
+
 /// The default frame size is smaller on a CPU than on a GPU.
-void set_default_size(session::SessionOptions& session, const render::DeviceInfo& device) {
-  if (device.type != protocol::DeviceType::cpu) return;
+void set_default_size(session::SessionOptions& session, const render::Engines& engines) {
+  if (!has_processor(engines)) return;
   session.width = 640;
   session.height = 360;
 }
@@ -54,8 +62,8 @@ void set_default_size(session::SessionOptions& session, const render::DeviceInfo
 /// the process takes 240 MB instead of 460. Free memory at an arena's end is kept up to a size, or
 /// every frame would allocate its working memory again. With a GPU only encoded frames would be
 /// mapped, at a cost of 2 to 3 ms for each of 1920x1080.
-void set_mmap_threshold(const render::DeviceInfo& device) {
-  if (device.type != protocol::DeviceType::cpu) return;
+void set_mmap_threshold(const render::Engines& engines) {
+  if (!has_processor(engines)) return;
 #ifdef __GLIBC__
   constexpr int mmap_threshold_bytes = 1 << 20;
   constexpr int trim_threshold_bytes = 16 << 20;
@@ -185,15 +193,18 @@ int run(const ServeOptions& options) {
   net::ServerOptions serving = server_options(options);
   net::check_server_options(serving);
 
-  const std::unique_ptr<render::Engine> made = make_engine(options.device);
-  render::Engine& engine = *made;
-  spdlog::info("rendering on {} ({}), ray tracer {}", engine.device().name, engine.device().driver,
-               protocol::enum_name(engine.tracer()));
-  set_mmap_threshold(engine.device());
-  if (!options.width && !options.height) set_default_size(hosting.session, engine.device());
+  const std::vector<std::unique_ptr<render::Engine>> made = make_engines(options.device);
+  render::Engines engines;
+  for (const auto& engine : made) {
+    engines.push_back(*engine);
+    spdlog::info("rendering on {} ({}), ray tracer {}", engine->device().name,
+                 engine->device().driver, protocol::enum_name(engine->tracer()));
+  }
+  set_mmap_threshold(engines);
+  if (!options.width && !options.height) set_default_size(hosting.session, engines);
   const std::unique_ptr<jobs::JobQueue> job_queue = make_job_queue(options, hosting);
   hosting.jobs = job_queue.get();
-  session::SessionHost host(engine, hosting);
+  session::SessionHost host(engines, hosting);
   if (uploads) {
     serving.router.uploads = uploads->scenes();
     serving.router.uploaded_environments = uploads->environments();

@@ -80,6 +80,7 @@ class JobQueue {
   protocol::Result<void> check(const protocol::JobCreate& request) const;
   void run();
   void run_webhooks();
+  void wait_for_webhook(std::unique_lock<std::mutex>& lock);
   bool is_stopping();
   std::optional<BegunJob> begin_or_wait();
   bool wait(std::condition_variable& event, double seconds);

@@ -312,6 +312,14 @@ std::optional<DueWebhook> JobStore::due_webhook(double now) {
       .id = row.text(0), .url = row.text(1), .attempts = static_cast<int>(row.integer(2))};
 }
 
+std::optional<double> JobStore::next_webhook() {
+  Statement row = database_.prepare(
+      "SELECT webhook_due FROM jobs WHERE webhook IS NOT NULL AND webhook_due IS NOT NULL "
+      "ORDER BY webhook_due LIMIT 1");
+  if (!row.step()) return std::nullopt;
+  return row.real(0);
+}
+
 void JobStore::webhook_sent(const std::string& id, std::optional<double> again) {
   database_
       .prepare(

@@ -70,6 +70,8 @@ class JobStore {
   void end(const std::string& id, const JobEnd& end, double now, double expires);
 
   std::optional<DueWebhook> due_webhook(double now);
+  /// When the next one is due; empty: none is.
+  std::optional<double> next_webhook();
   /// Delivered, or to be tried again at `again`.
   void webhook_sent(const std::string& id, std::optional<double> again);
 

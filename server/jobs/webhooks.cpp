@@ -3,6 +3,7 @@
 #include <openssl/hmac.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cmath>
@@ -15,8 +16,9 @@ namespace heliograph::jobs {
 namespace {
 
 constexpr int most_deliveries = 10;
-constexpr double first_pause = 5.0;  // seconds, doubled after each attempt
-constexpr double check_interval = 5.0;
+constexpr double first_pause = 5.0;            // seconds, doubled after each attempt
+constexpr double webhook_failure_pause = 5.0;  // of the database, seconds
+constexpr double longest_wait = 3600.0;        // the clock may be set
 
 double seconds_now() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -35,6 +37,14 @@ std::string signature_of(const std::string& body, const std::string& secret) {
 
 }  // namespace
 
+/// Until the next one is due, or the end of a job.
+void JobQueue::wait_for_webhook(std::unique_lock<std::mutex>& lock) {
+  const std::optional<double> next = store_.next_webhook();
+  if (!next) return webhook_event_.wait(lock);
+  const double seconds = std::clamp(*next - seconds_now(), 0.0, longest_wait);
+  webhook_event_.wait_for(lock, std::chrono::duration<double>(seconds));
+}
+
 void JobQueue::run_webhooks() {
   while (true) {
     try {
@@ -47,7 +57,7 @@ void JobQueue::run_webhooks() {
         if (due) {
           job = store_.find(due->id);
         } else {
-          webhook_event_.wait_for(lock, std::chrono::duration<double>(check_interval));
+          wait_for_webhook(lock);
         }
       }
       if (!due) continue;
@@ -62,7 +72,7 @@ void JobQueue::run_webhooks() {
       store_.webhook_sent(due->id, again);
     } catch (const std::exception& failure) {
       spdlog::error("jobs: {}", failure.what());
-      if (!wait(webhook_event_, check_interval)) return;
+      if (!wait(webhook_event_, webhook_failure_pause)) return;
     }
   }
 }

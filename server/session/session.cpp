@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "protocol/settings/settings_json.hpp"
-#include "session/rendering/device_migration.hpp"
+#include "session/devices/device_migration.hpp"
 
 namespace heliograph::session {
 
@@ -57,6 +57,7 @@ protocol::SessionInfo Session::info_locked() const {
                              .control = core_.viewers.control_mode(),
                              .rev = core_.rev,
                              .idle_seconds = std::chrono::duration<double>(idle()).count(),
+                             .device = static_cast<std::uint32_t>(device()),
                              .follows = std::nullopt};
   if (!follows().empty()) info.follows = follows();
   if (core_.scene) info.scene = core_.scene_info.name;
@@ -242,6 +243,11 @@ void Session::discard_requests_of(const std::string& viewer) {
   timeline_.fail_steps_of(
       viewer, error::not_found("session", "the viewer has left the session of the steps"));
   core_.wake->notify();  // the render thread drops its captures
+}
+
+bool Session::is_on(const DeviceMigration& device) const {
+  const std::lock_guard lock(core_.mutex);
+  return device.is_done(core_.resources) && device.is_done(core_.environment);
 }
 
 void Session::migrate(DeviceMigration& migration) {

@@ -41,6 +41,8 @@ class Session {
   bool starts_empty() const { return core_.options.starts_empty; }
   /// The session that it follows with a camera of its own; empty: none.
   const std::string& follows() const { return core_.options.follows; }
+  /// The index of the device that renders it.
+  std::size_t device() const { return core_.options.device.value_or(0); }
   std::uint32_t rev() const;
   /// The session as `viewer` sees it.
   protocol::SessionInfo info(const std::string& viewer) const;
@@ -98,7 +100,10 @@ class Session {
   RenderState render_state() const;
   /// Whether frames are due without viewers: in lockstep, or of a reference.
   bool renders_without_viewers() const;
-  /// Brings everything that is on a lost device to the present one.
+  /// Whether all of its scene is on that device.
+  bool is_on(const DeviceMigration& device) const;
+  /// Brings everything that is on a lost device, or another one, to the present one. May run on any
+  /// thread.
   void migrate(DeviceMigration& migration);
 
  private:

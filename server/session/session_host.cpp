@@ -59,30 +59,35 @@ Result<void> may_change(const Session& session, const protocol::MethodDescriptor
 
 }  // namespace
 
-SessionHost::SessionHost(render::Engine& engine, HostOptions options)
-    : engine_(engine),
-      options_(std::move(options)),
+SessionHost::SessionHost(const render::Engines& engines, HostOptions options)
+    : options_(std::move(options)),
       catalogue_(options_.scene_roots),
-      render_loop_(engine, options_.release_after),
+      devices_(engines, options_.release_after),
       sessions_(
           options_.limits, options_.session,
           [this](SessionOptions session, PixelShare pixels) {
-            return render_loop_.open(std::move(session), std::move(pixels));
+            return devices_.open(std::move(session), std::move(pixels));
           },
-          [this](const Session& session) { render_loop_.close(session); }),
+          [this](const Session& session) { devices_.close(session); }),
       dispatcher_(options_.dispatch),
-      loader_(engine, catalogue_,
+      loader_(devices_, catalogue_,
               {.environment = options_.environment,
                .limits = options_.import_limits,
                .cache_bytes = options_.scene_cache_bytes}),
-      environments_(engine, SceneCatalogue(with(options_.scene_roots, options_.environment_roots))),
+      environments_(devices_,
+                    SceneCatalogue(with(options_.scene_roots, options_.environment_roots))),
       thumbnails_(catalogue_, options_.thumbnail_folder,
                   [this](const std::string& scene, SceneThumbnails::Rendered done) {
                     render_thumbnail(scene, std::move(done));
                   }) {
-  loader_.on_device_loss([this] { render_loop_.report_device_loss(); });
-  environments_.on_device_loss([this] { render_loop_.report_device_loss(); });
-  render_loop_.on_new_device([this] { loader_.take_new_device(); });
+  const auto report_loss = [this](std::size_t device) {
+    devices_.loop(device).report_device_loss();
+  };
+  loader_.on_device_loss(report_loss);
+  environments_.on_device_loss(report_loss);
+  for (std::size_t i = 0; i < devices_.count(); ++i) {
+    devices_.loop(i).on_new_device([this, i] { loader_.take_new_device(i); });
+  }
   add_session_commands(dispatcher_, *this);
   add_scene_commands(dispatcher_, *this);
   add_camera_commands(dispatcher_, *this);
@@ -119,7 +124,7 @@ void SessionHost::follow_jobs() {
     const std::string key = "job.changed " + job.job;
     for (const auto& session : sessions_.all()) session->viewers().send_all(text, key);
   });
-  options_.jobs->pause_while([this] { return render_loop_.images_move(); });
+  options_.jobs->pause_while([this] { return devices_.images_move(); });
   options_.jobs->start();
 }
 
@@ -138,20 +143,23 @@ void SessionHost::work_when_idle() {
 /// Closes sessions without use, and renders thumbnails where nothing else is to be done. Gives
 /// the time until there may be more to do: no less than what shows that the server is idle.
 Clock::duration SessionHost::do_idle_work() {
-  const Clock::duration next = sessions_.close_idle(), soon = idle_period;
-  if (is_idle() && thumbnails_.has_work()) thumbnails_.render_next();
-  return next < soon ? next : soon;
+  const Clock::duration next = sessions_.close_idle();
+  if (!thumbnails_.has_work()) return next;
+  if (is_idle()) thumbnails_.render_next();
+  return std::min<Clock::duration>(next, idle_period);
 }
 
 /// Whether no session has had a frame since this was asked last, or nothing has moved for long.
 bool SessionHost::is_idle() {
-  const std::uint64_t frames = render_loop_.totals().frames.count();
+  const std::uint64_t frames = devices_.totals().frames.count();
   const bool idle = std::exchange(frames_before_, frames) == frames;
-  return ready() && (idle || render_loop_.still_for() >= still_period);
+  return ready() && (idle || devices_.still_for() >= still_period);
 }
 
 Result<SceneThumbnails::File> SessionHost::scene_thumbnail(const std::string& scene) {
-  return thumbnails_.get(scene);
+  Result<SceneThumbnails::File> found = thumbnails_.get(scene);
+  if (thumbnails_.has_work()) idle_check_.notify();
+  return found;
 }
 
 /// In a session of its own, which opens the scene as any other does.
@@ -191,12 +199,13 @@ void SessionHost::stop() {
   if (idle_thread_.joinable()) idle_thread_.join();
   loader_.stop();
   environments_.stop();
-  render_loop_.stop();
+  devices_.stop();
 }
 
 void SessionHost::create_session(const protocol::SessionCreate& request, const std::string& by,
-                                 Created done) {
+                                 Created done, std::optional<std::size_t> device) {
   SessionOptions options = options_.session;
+  options.device = device;
   options.name = request.name.value_or("");
   std::shared_ptr<Session> model = sessions_.main();
   if (request.copy_of) {
@@ -236,6 +245,7 @@ Result<std::shared_ptr<Session>> SessionHost::detach(const std::string& viewer) 
   SessionOptions options = options_.session;
   options.width = info.width;
   options.height = info.height;
+  options.device = leader->device();  // they share what is on it
   return sessions_.detach(viewer, std::move(options));
 }
 
@@ -260,7 +270,7 @@ void SessionHost::load_scene(std::shared_ptr<Session> session, const protocol::S
 }
 
 void SessionHost::on_first_frame(std::function<void()> callback) {
-  render_loop_.on_first_frame(std::move(callback));
+  devices_.on_first_frame(std::move(callback));
 }
 
 }  // namespace heliograph::session

@@ -11,11 +11,11 @@
 
 #include "protocol/json/jsonrpc.hpp"
 #include "render/api/renderer.hpp"
+#include "session/devices/render_devices.hpp"
 #include "session/library/environment_library.hpp"
 #include "session/library/scene_catalogue.hpp"
 #include "session/library/scene_loader.hpp"
 #include "session/library/scene_thumbnails.hpp"
-#include "session/rendering/render_loop.hpp"
 #include "session/session_registry.hpp"
 
 namespace heliograph::jobs {
@@ -46,15 +46,16 @@ struct HostOptions {
 /// scenes, and the dispatcher of the clients' commands.
 class SessionHost {
  public:
+  /// Sessions on the devices of the engines, at least one, which must outlive it.
   /// @throws std::runtime_error, scene::ImportError
-  SessionHost(render::Engine& engine, HostOptions options);
+  SessionHost(const render::Engines& engines, HostOptions options);
   ~SessionHost();
 
   const protocol::Dispatcher& dispatcher() const { return dispatcher_; }
   const protocol::DispatchLimits& dispatch_limits() const { return options_.dispatch; }
   std::uint64_t max_upload_bytes() const { return options_.max_upload_bytes; }
   const SceneCatalogue& catalogue() const { return catalogue_; }
-  render::Engine& engine() const { return engine_; }
+  const RenderDevices& devices() const { return devices_; }
 
   SessionRegistry& sessions() { return sessions_; }
   const SessionRegistry& sessions() const { return sessions_; }
@@ -65,9 +66,10 @@ class SessionHost {
   jobs::JobQueue* jobs() const { return options_.jobs; }
 
   /// Creates a session. `done` is called once, here or when its scene is loaded; if that fails the
-  /// session is closed.
+  /// session is closed. `device`: the index of that which renders it; empty: where there is room.
   using Created = std::function<void(protocol::Result<std::shared_ptr<Session>>)>;
-  void create_session(const protocol::SessionCreate& request, const std::string& by, Created done);
+  void create_session(const protocol::SessionCreate& request, const std::string& by, Created done,
+                      std::optional<std::size_t> device = {});
   /// Gives a viewer a camera of its own; see SessionRegistry::detach.
   protocol::Result<std::shared_ptr<Session>> detach(const std::string& viewer);
   /// Finds a session for a viewer of an earlier server run; see SessionRegistry::resume.
@@ -77,17 +79,16 @@ class SessionHost {
   protocol::SceneCancelled cancel_load(const Session& session) { return loader_.cancel(session); }
   CacheTotals scene_cache_totals() const { return loader_.cache_totals(); }
   void on_first_frame(std::function<void()> callback);
-  /// Whether a frame has been rendered and the device works.
-  bool ready() const { return render_loop_.has_rendered() && render_loop_.device_ready(); }
+  /// Whether a frame has been rendered and a device works.
+  bool ready() const { return devices_.has_rendered() && devices_.ready(); }
   /// Readable text, while it is not.
   std::string not_ready_reason() const {
-    return render_loop_.device_ready() ? "no frame has been rendered yet"
-                                       : "the device was lost and is being recovered";
+    return devices_.ready() ? "no frame has been rendered yet"
+                            : "the device was lost and is being recovered";
   }
-  std::uint64_t device_losses() const { return render_loop_.device_losses(); }
   /// Ends all threads. Pending requests fail before this returns, so their callers must outlive it.
   void stop();
-  RenderTotals render_totals() const { return render_loop_.totals(); }
+  RenderTotals render_totals() const { return devices_.totals(); }
 
  private:
   void work_when_idle();
@@ -98,10 +99,9 @@ class SessionHost {
   void fail_creation(const std::shared_ptr<Session>& session, const protocol::Error& why,
                      const Created& done);
 
-  render::Engine& engine_;
   const HostOptions options_;
   SceneCatalogue catalogue_;
-  RenderLoop render_loop_;
+  RenderDevices devices_;
   SessionRegistry sessions_;
   protocol::Dispatcher dispatcher_;
   SceneLoader loader_;

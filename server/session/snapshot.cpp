@@ -66,8 +66,9 @@ Result<void> request_snapshot(SessionHost& host, const std::shared_ptr<Session>&
   if (view.as_shown()) return shown->captures().request_capture(std::move(capture));
   Result<std::shared_ptr<Session>> created = protocol::error::internal();
   // Without a scene to load it is created at once.
-  host.create_session(copy_request(*shown, view), {},
-                      [&](Result<std::shared_ptr<Session>> made) { created = std::move(made); });
+  host.create_session(
+      copy_request(*shown, view), {},
+      [&](Result<std::shared_ptr<Session>> made) { created = std::move(made); }, shown->device());
   if (!created) return created.error();
   const std::shared_ptr<Session> copy = *created;
   capture.done = [&host, weak = std::weak_ptr<Session>(copy),

@@ -110,7 +110,7 @@ class Stage {
  public:
   explicit Stage(const Options& options)
       : engine_({}),
-        host_(engine_, hosting()),
+        host_({engine_}, hosting()),
         server_(host_, {.port = 0, .access = {}, .router = {}}),
         network_([this] { server_.run(); }),
         frames_(draw_frames(animation_frames)),

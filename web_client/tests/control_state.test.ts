@@ -9,7 +9,8 @@ function viewer(viewerId: string, name: string | null, control: boolean, you = f
 
 function session(control: SessionInfo["control"], ...viewers: ViewerInfo[]): SessionInfo {
   const size = { width: 640, height: 360 };
-  return { name: "main", scene: null, viewers, control, rev: 1, idle_seconds: 0, ...size };
+  const idle = { idle_seconds: 0, device: 0 };
+  return { name: "main", scene: null, viewers, control, rev: 1, ...idle, ...size };
 }
 
 test("a viewer with control may change the session, also without session info", () => {

@@ -542,7 +542,8 @@ class Session(_Group):
             defaults or the copied settings.
         width: Frame width. [pixels]
 
-        Returns: control, follows, height, idle_seconds, name, rev, scene, viewers, width.
+        Returns: control, device, follows, height, idle_seconds, name, rev, scene, viewers,
+            width.
         """
         return self._call("session.create", _given({
             "copy_of": copy_of, "height": height, "idle_timeout": idle_timeout,
@@ -577,7 +578,8 @@ class Session(_Group):
     def info(self) -> Dict[str, Any]:
         """Describes this session: its viewers and which of them have control.
 
-        Returns: control, follows, height, idle_seconds, name, rev, scene, viewers, width.
+        Returns: control, device, follows, height, idle_seconds, name, rev, scene, viewers,
+            width.
         """
         return self._call("session.info", {})
 
@@ -596,7 +598,8 @@ class Session(_Group):
             names or the caller.
         viewer: Id of the viewer that gets control.
 
-        Returns: control, follows, height, idle_seconds, name, rev, scene, viewers, width.
+        Returns: control, device, follows, height, idle_seconds, name, rev, scene, viewers,
+            width.
         """
         return self._call("session.control", _given({
             "action": action, "mode": mode, "viewer": viewer}))

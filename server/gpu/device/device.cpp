@@ -8,6 +8,8 @@
 #include <iterator>
 #include <vector>
 
+#include "gpu/device/several_devices.hpp"
+
 namespace heliograph::gpu {
 namespace {
 
@@ -127,7 +129,7 @@ void Device::create(const Instance& instance) {
   info.enabledExtensionCount = static_cast<std::uint32_t>(rays.extensions().size());
   info.ppEnabledExtensionNames = rays.extensions().data();
   check(vkCreateDevice(report_.handle, &info, nullptr, &handle_), "create the Vulkan device");
-  volkLoadDevice(handle_);
+  if (!dispatches_by_handle()) volkLoadDevice(handle_);
   vkGetDeviceQueue(handle_, queue_family_, 0, &queue_);
   VkSemaphoreTypeCreateInfo type{VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO};
   type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
@@ -158,6 +160,9 @@ void Device::save_pipeline_cache() const {
   if (vkGetPipelineCacheData(handle_, pipeline_cache_, &size, nullptr) != VK_SUCCESS) return;
   std::vector<char> bytes(size);
   if (vkGetPipelineCacheData(handle_, pipeline_cache_, &size, bytes.data()) != VK_SUCCESS) return;
+  // Another device may have the same file.
+  static std::mutex mutex;
+  const std::lock_guard lock(mutex);
   // Written beside and moved over, so that a second process never reads half a file.
   const auto temporary = cache_file_.string() + ".new";
   std::ofstream file(temporary, std::ios::binary);

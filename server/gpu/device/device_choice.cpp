@@ -2,9 +2,15 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
+#include <functional>
 #include <sstream>
+#include <system_error>
+
+#include "gpu/device/several_devices.hpp"
 
 namespace heliograph::gpu {
 namespace {
@@ -85,6 +91,37 @@ int rank(VkPhysicalDeviceType type) {
     default:
       return 0;
   }
+}
+
+/// "Graphics#2": the second device of this name.
+struct DeviceName {
+  std::string part;
+  std::optional<std::size_t> number;  // from 1 on
+};
+
+DeviceName parse_name(const std::string& text) {
+  const std::size_t mark = text.rfind('#');
+  if (mark == std::string::npos) return {text, std::nullopt};
+  std::size_t number = 0;
+  const char* const end = text.data() + text.size();
+  const auto [last, error] = std::from_chars(text.data() + mark + 1, end, number);
+  if (error != std::errc() || last != end || number == 0) return {text, std::nullopt};
+  return {text.substr(0, mark), number};
+}
+
+bool has_name(const DeviceReport& report, const std::string& part) {
+  return lower(report.name).find(lower(part)) != std::string::npos;
+}
+
+/// Indices of those that will do and have this part in their name, the best kind first.
+std::vector<std::size_t> ranked(const std::vector<DeviceReport>& reports, const std::string& part) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    if (reports[i].missing.empty() && has_name(reports[i], part)) found.push_back(i);
+  }
+  std::ranges::stable_sort(found, std::greater<>(),
+                           [&](std::size_t i) { return rank(reports[i].type); });
+  return found;
 }
 
 /// Every manifest the loader would read.
@@ -170,21 +207,24 @@ const char* type_name(VkPhysicalDeviceType type) {
 std::vector<DeviceReport> survey_devices(const Instance& instance, const std::string& name_part) {
   std::vector<DeviceReport> reports;
   for (const VkPhysicalDevice device : instance.devices()) reports.push_back(report_on(device));
-  DeviceReport* best = nullptr;
+  const DeviceName wanted = parse_name(name_part);
   for (auto& report : reports) {
     if (!report.missing.empty()) {
       report.reason = "not usable: it lacks " + joined(report.missing);
-    } else if (!name_part.empty() &&
-               lower(report.name).find(lower(name_part)) == std::string::npos) {
-      report.reason = "its name does not contain \"" + name_part + "\"";
-    } else if (!best || rank(report.type) > rank(best->type)) {
-      best = &report;
+    } else if (!has_name(report, wanted.part)) {
+      report.reason = "its name does not contain \"" + wanted.part + "\"";
     }
   }
+  // With fewer devices than before a loss, the number counts on from the first.
+  const std::vector<std::size_t> found = ranked(reports, wanted.part);
+  DeviceReport* const best =
+      found.empty() ? nullptr : &reports[found[(wanted.number.value_or(1) - 1) % found.size()]];
   for (auto& report : reports) {
     if (&report == best) {
       report.chosen = true;
       report.reason = name_part.empty() ? "the best kind of device here" : "asked for by name";
+    } else if (report.reason.empty() && wanted.number) {
+      report.reason = "number " + std::to_string(*wanted.number) + " of this name is meant";
     } else if (report.reason.empty()) {
       report.reason = rank(report.type) == rank(best->type)
                           ? "an equal one comes first"
@@ -192,6 +232,66 @@ std::vector<DeviceReport> survey_devices(const Instance& instance, const std::st
     }
   }
   return reports;
+}
+
+std::vector<std::string> choose_devices(const std::vector<DeviceReport>& devices,
+                                        const std::vector<std::string>& names) {
+  std::vector<std::string> chosen;
+  std::vector<std::size_t> taken(devices.size(), 0);  // how often
+  const auto take = [&](const std::string& part, const std::vector<std::size_t>& found,
+                        std::size_t number) {
+    ++taken[found[(number - 1) % found.size()]];
+    chosen.push_back(part + "#" + std::to_string(number));
+  };
+  for (const std::string& name : names) {
+    const bool all = name == all_devices;
+    const DeviceName wanted = all ? DeviceName() : parse_name(name);
+    std::vector<std::size_t> found = ranked(devices, wanted.part);
+    if (found.empty()) {
+      chosen.push_back(all ? "" : name);
+    } else if (all) {
+      const auto is_gpu = [&](std::size_t i) {
+        return devices[i].type != VK_PHYSICAL_DEVICE_TYPE_CPU;
+      };
+      const auto gpus = std::ranges::count_if(found, is_gpu);
+      // GPUs come first, but for devices of no known kind.
+      for (std::size_t number = 1; number <= found.size(); ++number) {
+        if (gpus == 0 || is_gpu(found[number - 1])) take("", found, number);
+      }
+    } else if (wanted.number) {
+      take(wanted.part, found, *wanted.number);
+    } else {
+      const auto least =
+          std::ranges::min_element(found, {}, [&](std::size_t i) { return taken[i]; });
+      take(wanted.part, found, static_cast<std::size_t>(least - found.begin()) + 1);
+    }
+  }
+  return chosen;
+}
+
+std::optional<std::uint64_t> free_memory(VkPhysicalDevice device) {
+  std::uint32_t count = 0;
+  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, nullptr);
+  std::vector<VkExtensionProperties> extensions(count);
+  vkEnumerateDeviceExtensionProperties(device, nullptr, &count, extensions.data());
+  const bool tells = std::ranges::any_of(extensions, [](const VkExtensionProperties& extension) {
+    return std::strcmp(extension.extensionName, VK_EXT_MEMORY_BUDGET_EXTENSION_NAME) == 0;
+  });
+  if (!tells) return std::nullopt;
+  VkPhysicalDeviceMemoryBudgetPropertiesEXT budget{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_BUDGET_PROPERTIES_EXT};
+  VkPhysicalDeviceMemoryProperties2 memory{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_MEMORY_PROPERTIES_2,
+                                           &budget};
+  vkGetPhysicalDeviceMemoryProperties2(device, &memory);
+  std::uint64_t bytes = 0;
+  for (std::uint32_t i = 0; i < memory.memoryProperties.memoryHeapCount; ++i) {
+    const VkMemoryHeapFlags flags = memory.memoryProperties.memoryHeaps[i].flags;
+    if ((flags & VK_MEMORY_HEAP_DEVICE_LOCAL_BIT) == 0) continue;
+    if (budget.heapBudget[i] > budget.heapUsage[i]) {
+      bytes += budget.heapBudget[i] - budget.heapUsage[i];
+    }
+  }
+  return bytes;
 }
 
 std::vector<DriverReport> examine_driver_files() {

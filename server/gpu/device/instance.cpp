@@ -2,6 +2,9 @@
 
 #include <cstdio>
 #include <cstring>
+#include <mutex>
+
+#include "gpu/device/several_devices.hpp"
 
 namespace heliograph::gpu {
 namespace {
@@ -34,6 +37,21 @@ bool has_extension(const char* name) {
   return false;
 }
 
+bool by_handle = false;
+
+/// By handle, other threads may call what was found, so that it is written once.
+bool find_loader() {
+  if (!by_handle) return volkInitialize() == VK_SUCCESS;
+  static const bool found = volkInitialize() == VK_SUCCESS;
+  return found;
+}
+
+void load_functions(VkInstance instance) {
+  if (!by_handle) return volkLoadInstanceOnly(instance);
+  static std::once_flag once;
+  std::call_once(once, [&] { volkLoadInstance(instance); });
+}
+
 VkDebugUtilsMessengerCreateInfoEXT messenger_info(Instance* instance) {
   VkDebugUtilsMessengerCreateInfoEXT info{VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT};
   info.messageSeverity = VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT |
@@ -46,8 +64,16 @@ VkDebugUtilsMessengerCreateInfoEXT messenger_info(Instance* instance) {
 
 }  // namespace
 
+void dispatch_by_handle() {
+  by_handle = true;
+}
+
+bool dispatches_by_handle() {
+  return by_handle;
+}
+
 Instance::Instance(bool validation) : validation_(validation) {
-  if (volkInitialize() != VK_SUCCESS) {
+  if (!find_loader()) {
     throw GpuError("no Vulkan loader (libvulkan.so.1) on this machine: install libvulkan1");
   }
   const char* layer = "VK_LAYER_KHRONOS_validation";
@@ -68,7 +94,7 @@ Instance::Instance(bool validation) : validation_(validation) {
   info.enabledLayerCount = validation ? 1 : 0;
   info.ppEnabledLayerNames = &layer;
   check(vkCreateInstance(&info, nullptr, &handle_), "create a Vulkan instance");
-  volkLoadInstanceOnly(handle_);
+  load_functions(handle_);
   if (validation && labels_) {
     const auto messenger = messenger_info(this);
     check(vkCreateDebugUtilsMessengerEXT(handle_, &messenger, nullptr, &messenger_),

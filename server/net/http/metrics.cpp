@@ -4,6 +4,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
@@ -105,10 +106,11 @@ double open_files() {
 void add_process(Page& page, const MetricsInput& input) {
   const std::chrono::duration<double> uptime = std::chrono::steady_clock::now() - input.started;
   page.describe("heliograph_build_info", "1, with the version and what it runs on.", "gauge");
+  const render::Engine& first = input.host.devices().engine(0);
   page.sample("heliograph_build_info",
               {{"version", HELIOGRAPH_VERSION},
-               {"device", input.host.engine().device().name},
-               {"tracer", protocol::enum_name(input.host.engine().tracer())}},
+               {"device", first.device().name},
+               {"tracer", protocol::enum_name(first.tracer())}},
               1);
   page.gauge("heliograph_uptime_seconds", "Time since the server started.", uptime.count());
   page.gauge("heliograph_ready", "1 if the server accepts new viewers.",
@@ -143,8 +145,6 @@ void add_streams(Page& page, const session::SessionHost& host) {
   page.gauge("heliograph_session_pixels", "Pixels of the frames of all sessions.",
              number(sessions.pixels_used()));
   page.gauge("heliograph_session_pixels_limit", "Most of them.", number(sessions.limits().pixels));
-  page.counter("heliograph_device_losses_total", "Losses of the graphics device.",
-               number(host.device_losses()));
   page.counter("heliograph_frames_sent_total", "Frames sent to viewers.",
                number(totals.sent.frames));
   page.counter("heliograph_sent_bytes_total", "Bytes of the frames sent to viewers.",
@@ -168,6 +168,46 @@ void add_streams(Page& page, const session::SessionHost& host) {
              "What all viewers' connections together take when busy, estimated from confirmations; "
              "not what is sent.",
              totals.goodput);
+}
+
+void add_devices(Page& page, const session::RenderDevices& devices) {
+  const auto each = [&](std::string_view name, std::string_view help, std::string_view type,
+                        const auto& value) {
+    page.describe(name, help, type);
+    for (std::size_t i = 0; i < devices.count(); ++i) {
+      page.sample(name, {{"device", std::to_string(i)}},
+                  static_cast<double>(value(devices.loop(i))));
+    }
+  };
+  using Loop = const session::RenderLoop&;
+  page.describe("heliograph_device_info", "1, with the name of each device.", "gauge");
+  for (std::size_t i = 0; i < devices.count(); ++i) {
+    const render::DeviceInfo info = devices.engine(i).device();
+    page.sample("heliograph_device_info",
+                {{"device", std::to_string(i)},
+                 {"name", info.name},
+                 {"driver", info.driver},
+                 {"tracer", protocol::enum_name(devices.engine(i).tracer())}},
+                1);
+  }
+  each("heliograph_device_losses_total", "Losses of the graphics device.", "counter",
+       [](Loop loop) { return loop.device_losses(); });
+  each("heliograph_device_ready", "1 if the device works, 0 while it is lost.", "gauge",
+       [](Loop loop) { return loop.device_ready() ? 1 : 0; });
+  each("heliograph_device_sessions", "Sessions that the device renders.", "gauge",
+       [](Loop loop) { return loop.load().sessions; });
+  each("heliograph_device_frames_total", "Frames that the device has rendered.", "counter",
+       [](Loop loop) { return loop.device_totals().frames; });
+  each("heliograph_device_render_seconds_total", "Time for which the device rendered.", "counter",
+       [](Loop loop) { return loop.device_totals().seconds; });
+  page.describe("heliograph_device_free_memory_bytes",
+                "The device's own memory that is free, where it tells.", "gauge");
+  for (std::size_t i = 0; i < devices.count(); ++i) {
+    const auto free_memory = devices.loop(i).load().free_memory;
+    if (!free_memory) continue;
+    page.sample("heliograph_device_free_memory_bytes", {{"device", std::to_string(i)}},
+                static_cast<double>(*free_memory));
+  }
 }
 
 void add_rendering(Page& page, const session::SessionHost& host) {
@@ -244,6 +284,7 @@ std::string metrics_text(const MetricsInput& input) {
   Page page;
   add_process(page, input);
   add_streams(page, input.host);
+  add_devices(page, input.host.devices());
   add_rendering(page, input.host);
   add_scenes(page, input.host);
   add_traffic(page, input.traffic);

@@ -1,3 +1,5 @@
+#include "gpu/device/several_devices.hpp"
+#include "render/api/devices.hpp"
 #include "render/frame/engine_parts.hpp"
 #include "render/resources/scene_resources.hpp"
 #include "render/resources/tables/jpeg_tables.hpp"
@@ -219,6 +221,64 @@ std::shared_ptr<const LitEnvironment> Engine::prefilter(scene::Environment envir
       parts->environments.get(std::make_shared<const scene::Environment>(std::move(environment))));
 }
 
+std::vector<std::string> device_names(std::string_view list) {
+  std::vector<std::string> names;
+  std::string name;
+  int depth = 0;  // of parentheses
+  const auto add = [&] {
+    const std::size_t begin = std::min(name.find_first_not_of(' '), name.size());
+    name = name.substr(begin, name.find_last_not_of(' ') + 1 - begin);
+    if (!name.empty()) names.push_back(name);
+    name.clear();
+  };
+  for (const char c : list) {
+    if (c == '(') ++depth;
+    if (c == ')') --depth;
+    if (c == ',' && depth <= 0) {
+      add();
+    } else {
+      name += c;
+    }
+  }
+  add();
+  return names;
+}
+
+std::vector<EngineOptions> choose_devices(const EngineOptions& options) {
+  std::vector<std::string> names = device_names(options.device);
+  if (names.size() > 1 || (names.size() == 1 && names.front() == gpu::all_devices)) {
+    const gpu::Instance instance(false);
+    names = gpu::choose_devices(gpu::survey_devices(instance, {}), names);
+  }
+  if (names.size() > 1) gpu::dispatch_by_handle();
+  std::vector<EngineOptions> engines(std::max<std::size_t>(names.size(), 1), options);
+  for (std::size_t i = 0; i < names.size(); ++i) engines[i].device = names[i];
+  return engines;
+}
+
+std::optional<std::uint64_t> free_memory(Engine& engine) {
+  return gpu::free_memory(engine.parts().device.physical());
+}
+
+namespace {
+
+/// What a survey for each of the names says, as one: whatever one of them chooses is chosen.
+std::vector<gpu::DeviceReport> survey(const gpu::Instance& instance, const std::string& list) {
+  std::vector<gpu::DeviceReport> reports = gpu::survey_devices(instance, {});
+  const auto names = gpu::choose_devices(reports, device_names(list));
+  if (names.empty()) return reports;
+  reports = gpu::survey_devices(instance, names.front());
+  for (const std::string& name : names) {
+    const auto more = gpu::survey_devices(instance, name);
+    for (std::size_t i = 0; i < std::min(more.size(), reports.size()); ++i) {
+      if (more[i].chosen) reports[i] = more[i];
+    }
+  }
+  return reports;
+}
+
+}  // namespace
+
 std::string describe_devices(const EngineOptions& options) {
   std::string text = "Driver files and what each finds alone:\n";
   try {
@@ -229,7 +289,7 @@ std::string describe_devices(const EngineOptions& options) {
     const gpu::Instance instance(false);
     text += "Devices:\n";
     bool chosen = false;
-    for (const auto& report : gpu::survey_devices(instance, options.device)) {
+    for (const auto& report : survey(instance, options.device)) {
       text += std::string(report.chosen ? "* " : "  ") + report.name + ", " +
               gpu::type_name(report.type) + ", Vulkan " + report.version + ", " + report.driver +
               "\n    " + (report.chosen ? "chosen: " : "not chosen: ") + report.reason + "\n";

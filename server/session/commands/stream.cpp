@@ -68,12 +68,16 @@ Result<ChosenSession> resume_session(SessionHost& host, const Hello& request,
 HelloResult greeting(SessionHost& host, const ChosenSession& chosen,
                      const protocol::CallContext& call, const stream::CodecChoice& choice) {
   const Session& session = *chosen.session;
-  const render::DeviceInfo& device = host.engine().device();
+  const render::Engine& engine = host.devices().engine(session.device());
+  const render::DeviceInfo device = engine.device();
   const SessionLimits& limits = session.limits();
   HelloResult result;
   result.version = HELIOGRAPH_VERSION;
-  result.device = {.name = device.name, .driver = device.driver, .type = device.type};
-  result.tracer = host.engine().tracer();
+  result.device = {.name = device.name,
+                   .driver = device.driver,
+                   .type = device.type,
+                   .index = static_cast<std::uint32_t>(session.device())};
+  result.tracer = engine.tracer();
   result.session = session.name();
   result.viewer = call.viewer;
   result.role = call.view_only ? protocol::ViewerRole::view : protocol::ViewerRole::control;

@@ -13,6 +13,7 @@
 #include "scene/environment.hpp"
 #include "scene/import.hpp"
 #include "scene/studio.hpp"
+#include "session/devices/render_devices.hpp"
 #include "session/event_log.hpp"
 #include "session/library/environment_thumbnail.hpp"
 
@@ -33,8 +34,8 @@ scene::Environment environment_of(const CatalogueEntry& entry) {
 
 }  // namespace
 
-EnvironmentLibrary::EnvironmentLibrary(render::Engine& engine, SceneCatalogue catalogue)
-    : engine_(engine),
+EnvironmentLibrary::EnvironmentLibrary(const RenderDevices& devices, SceneCatalogue catalogue)
+    : devices_(devices),
       catalogue_(std::move(catalogue)),
       loader_("environment loader", max_queued_environments),
       thumbnail_maker_("environment thumbnails", max_queued_thumbnails) {}
@@ -67,14 +68,14 @@ Result<CatalogueEntry> EnvironmentLibrary::find(const std::string& name) const {
 Result<void> EnvironmentLibrary::load_into(Session& session, const CatalogueEntry& entry,
                                            const std::string& by) {
   try {
-    return session.scene().set_environment(entry.name, engine_.prefilter(environment_of(entry)),
-                                           by);
+    render::Engine& engine = devices_.engine(session.device());
+    return session.scene().set_environment(entry.name, engine.prefilter(environment_of(entry)), by);
   } catch (const scene::ImportError& failure) {
     return protocol::error::invalid("name", "cannot be loaded: " + std::string(failure.what()));
   } catch (const render::DeviceLost& failure) {
     log_error({.session = session.name()},
               fmt::format("loading {}: {}", entry.name, failure.what()));
-    if (on_device_loss_) on_device_loss_();
+    if (on_device_loss_) on_device_loss_(session.device());
     return protocol::error::not_ready("the device was lost during loading; try again");
   } catch (const std::exception& failure) {
     log_error({.session = session.name()},

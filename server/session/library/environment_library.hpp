@@ -15,17 +15,15 @@
 #include "session/session.hpp"
 #include "session/worker.hpp"
 
-namespace heliograph::render {
-class Engine;
-}
-
 namespace heliograph::session {
+
+class RenderDevices;
 
 /// The environments that clients may choose: the studio, and every .hdr and .exr file below the
 /// roots of the catalogue, named like scenes. Loads and prefilters them beside rendering.
 class EnvironmentLibrary {
  public:
-  EnvironmentLibrary(render::Engine& engine, SceneCatalogue catalogue);
+  EnvironmentLibrary(const RenderDevices& devices, SceneCatalogue catalogue);
 
   /// All environments as they are on disk now, by name; the studio has no path.
   std::vector<CatalogueEntry> list() const;
@@ -38,8 +36,11 @@ class EnvironmentLibrary {
   /// A small PNG of an environment, tone mapped; made once for each version of its file. `done` is
   /// called once, here or on a thread of its own.
   void thumbnail(const std::string& name, Thumbnail done);
-  /// Called when prefiltering throws render::DeviceLost. Set before the first load.
-  void on_device_loss(std::function<void()> callback) { on_device_loss_ = std::move(callback); }
+  /// Called with the index of the device when prefiltering throws render::DeviceLost. Set before
+  /// the first load.
+  void on_device_loss(std::function<void(std::size_t)> callback) {
+    on_device_loss_ = std::move(callback);
+  }
   /// Waits for the running load; the others stay unanswered.
   void stop();
 
@@ -48,9 +49,9 @@ class EnvironmentLibrary {
   protocol::Result<void> load_into(Session& session, const CatalogueEntry& entry,
                                    const std::string& by);
 
-  render::Engine& engine_;
+  const RenderDevices& devices_;
   const SceneCatalogue catalogue_;
-  std::function<void()> on_device_loss_;
+  std::function<void(std::size_t)> on_device_loss_;
   struct CachedThumbnail {
     scene::SourceFile file;
     std::vector<std::uint8_t> png;

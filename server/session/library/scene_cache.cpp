@@ -1,13 +1,10 @@
 #include "session/library/scene_cache.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 namespace heliograph::session {
 namespace {
-
-std::uint64_t bytes_of(const LoadedScene& scene) {
-  return scene.host_bytes + scene.device_bytes;
-}
 
 bool unchanged(const std::vector<scene::SourceFile>& sources) {
   return std::ranges::all_of(sources, [](const scene::SourceFile& source) {
@@ -15,15 +12,20 @@ bool unchanged(const std::vector<scene::SourceFile>& sources) {
   });
 }
 
-/// The same scene, through pointers that keep the whole entry in use.
-LoadedScene shared_copy(const std::shared_ptr<const LoadedScene>& entry) {
+}  // namespace
+
+/// The same scene, through pointers that keep the whole entry in use and tell of their end.
+LoadedScene SceneCache::shown_copy(const std::shared_ptr<const LoadedScene>& entry) const {
+  const std::shared_ptr<const LoadedScene> shown(
+      entry.get(), [held = entry, released = released_](const LoadedScene*) mutable {
+        held.reset();
+        if (released) released->notify();
+      });
   LoadedScene scene = *entry;
-  scene.scene = {entry, entry->scene.get()};
-  scene.resources = {entry, entry->resources.get()};
+  scene.scene = {shown, entry->scene.get()};
+  scene.resources = {shown, entry->resources.get()};
   return scene;
 }
-
-}  // namespace
 
 std::optional<LoadedScene> SceneCache::find(const SceneKey& key) {
   const std::lock_guard lock(mutex_);
@@ -34,7 +36,17 @@ std::optional<LoadedScene> SceneCache::find(const SceneKey& key) {
     return std::nullopt;
   }
   entries_.splice(entries_.end(), entries_, found);
-  return shared_copy(found->scene);
+  return shown_copy(found->scene);
+}
+
+std::optional<SceneCache::Loaded> SceneCache::find_elsewhere(const SceneKey& key) const {
+  const std::lock_guard lock(mutex_);
+  for (const Entry& entry : entries_) {
+    SceneKey here = entry.key;
+    here.device = key.device;
+    if (here == key && unchanged(entry.sources)) return Loaded{*entry.scene, entry.sources};
+  }
+  return std::nullopt;
 }
 
 LoadedScene SceneCache::add(const SceneKey& key, LoadedScene scene,
@@ -45,12 +57,16 @@ LoadedScene SceneCache::add(const SceneKey& key, LoadedScene scene,
   totals_.bytes += bytes_of(scene);
   entries_.push_back(
       {key, std::make_shared<const LoadedScene>(std::move(scene)), std::move(sources)});
-  return shared_copy(entries_.back().scene);
+  return shown_copy(entries_.back().scene);
 }
 
-void SceneCache::clear() {
+void SceneCache::clear(std::size_t device) {
   const std::lock_guard lock(mutex_);
-  while (!entries_.empty()) drop(entries_.begin());
+  for (auto entry = entries_.begin(); entry != entries_.end();) {
+    const auto next = std::next(entry);
+    if (entry->key.device == device) drop(entry);
+    entry = next;
+  }
 }
 
 void SceneCache::count_hit() {
@@ -84,8 +100,16 @@ CacheTotals SceneCache::totals() const {
 }
 
 void SceneCache::drop(std::list<Entry>::iterator entry) {
-  totals_.bytes -= bytes_of(*entry->scene);
+  const auto dropped = entry->scene;
   entries_.erase(entry);
+  totals_.bytes -= bytes_of(*dropped);
+}
+
+/// What it takes beside the entries, which may have the scene on other devices.
+std::uint64_t SceneCache::bytes_of(const LoadedScene& scene) const {
+  const bool shared = std::ranges::any_of(
+      entries_, [&](const Entry& entry) { return entry.scene->scene == scene.scene; });
+  return scene.device_bytes + (shared ? 0 : scene.host_bytes);
 }
 
 }  // namespace heliograph::session

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <list>
@@ -7,18 +8,21 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "scene/import.hpp"
 #include "session/library/loaded_scene.hpp"
+#include "session/wake_event.hpp"
 
 namespace heliograph::session {
 
-/// Identifies a load: the same key gives the same scene.
+/// Identifies a load: the same key gives the same scene on the same device.
 struct SceneKey {
   std::filesystem::path file;
   scene::SceneChoice choice;
   std::filesystem::path environment;  // empty: none
+  std::size_t device = 0;
   bool operator==(const SceneKey&) const = default;
 };
 
@@ -31,20 +35,29 @@ struct CacheTotals {
   std::uint64_t bytes = 0;
 };
 
-/// Least recently used cache of scenes on the device, shared by all sessions that show them. Within
+/// Least recently used cache of scenes on devices, shared by all sessions that show them. Within
 /// a memory limit it keeps scenes that no session shows; shown ones stay whatever the limit. Thread
 /// safe.
 class SceneCache {
  public:
-  explicit SceneCache(std::uint64_t max_bytes) : max_bytes_(max_bytes) {}
+  /// `released`, if any, is notified when a scene is not shown any more.
+  explicit SceneCache(std::uint64_t max_bytes, std::shared_ptr<WakeEvent> released = nullptr)
+      : max_bytes_(max_bytes), released_(std::move(released)) {}
 
   /// The scene, if its files have not changed.
   std::optional<LoadedScene> find(const SceneKey& key);
+  /// A scene and the files that it was loaded from.
+  struct Loaded {
+    LoadedScene scene;
+    std::vector<scene::SourceFile> sources;
+  };
+  /// The same scene on another device, if its files have not changed. It does not count as shown.
+  std::optional<Loaded> find_elsewhere(const SceneKey& key) const;
   /// Stores `scene`, loaded from `sources`, and gives the object to show, whose references tell the
   /// cache that it is shown.
   LoadedScene add(const SceneKey& key, LoadedScene scene, std::vector<scene::SourceFile> sources);
-  /// Drops everything, since the device was lost.
-  void clear();
+  /// Drops everything on a device, since it was lost.
+  void clear(std::size_t device);
   void count_hit();
   void count_miss();
 
@@ -60,9 +73,12 @@ class SceneCache {
     bool shown() const { return scene.use_count() > 1; }
   };
 
+  LoadedScene shown_copy(const std::shared_ptr<const LoadedScene>& entry) const;
   void drop(std::list<Entry>::iterator entry);
+  std::uint64_t bytes_of(const LoadedScene& scene) const;
 
   const std::uint64_t max_bytes_;
+  const std::shared_ptr<WakeEvent> released_;
   mutable std::mutex mutex_;
   std::list<Entry> entries_;  // least recently used first
   CacheTotals totals_;

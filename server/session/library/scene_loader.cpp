@@ -12,6 +12,7 @@
 #include "protocol/json/suggestions.hpp"
 #include "render/api/device_lost.hpp"
 #include "render/api/renderer.hpp"
+#include "session/devices/render_devices.hpp"
 #include "session/event_log.hpp"
 #include "session/library/scene_description.hpp"
 
@@ -25,9 +26,9 @@ namespace {
 constexpr float import_fraction = 0.7f;
 /// Progress between two reports of one stage.
 constexpr float report_step = 0.01f;
-/// How often a cache over its limit checks whether all scenes are still shown; and how long after a
-/// load its temporary memory is returned, since the first frames leave some behind, too.
-constexpr std::chrono::seconds trim_interval{2};
+/// How long after a load its temporary memory is returned, since the first frames leave some
+/// behind, too.
+constexpr std::chrono::seconds trim_delay{2};
 /// The scene may cause the loss of the device, so the number of tries is limited.
 constexpr int max_device_losses = 3;
 
@@ -82,13 +83,13 @@ void return_free_memory() {
 
 }  // namespace
 
-SceneLoader::SceneLoader(render::Engine& engine, const SceneCatalogue& catalogue,
+SceneLoader::SceneLoader(RenderDevices& devices, const SceneCatalogue& catalogue,
                          LoaderOptions options)
-    : engine_(engine),
+    : devices_(devices),
       catalogue_(catalogue),
       environments_(options.environment),
       options_(std::move(options)),
-      cache_(options_.cache_bytes),
+      cache_(options_.cache_bytes, wake_),
       thread_([this] { run(); }) {}
 
 void SceneLoader::stop() {
@@ -96,7 +97,7 @@ void SceneLoader::stop() {
     const std::lock_guard lock(mutex_);
     if (stopping_.exchange(true)) return;
   }
-  condition_.notify_one();
+  wake_->notify();
   thread_.join();
   for (const auto& job : std::exchange(jobs_, {})) {
     for (const Waiter& waiter : job->waiters) waiter.done(stopped());
@@ -109,7 +110,8 @@ void SceneLoader::load(std::shared_ptr<Session> session, const protocol::SceneLo
   if (!entry) return done(entry.error());
   SceneKey key{.file = entry->path,
                .choice = {request.scene.value_or(""), request.variant.value_or("")},
-               .environment = environments_.path_for(*entry).value_or("")};
+               .environment = environments_.path_for(*entry).value_or(""),
+               .device = session->device()};
   std::vector<Waiter> replaced;
   std::optional<LoadedScene> cached;
   {
@@ -133,7 +135,7 @@ void SceneLoader::load(std::shared_ptr<Session> session, const protocol::SceneLo
       job->waiters.push_back({std::move(session), by, done, job->entry.name});
     }
   }
-  condition_.notify_one();
+  wake_->notify();
   for (const Waiter& waiter : replaced) waiter.done(superseded());
   if (cached) done(describe_scene(*cached));
 }
@@ -210,20 +212,26 @@ void SceneLoader::drop(Job& job) {
 
 /// Waits for a job, and trims cache and memory while there is none; null on shutdown.
 std::shared_ptr<SceneLoader::Job> SceneLoader::next_job() {
-  std::unique_lock lock(mutex_);
-  const auto ready = [&] { return stopping_ || (device_ready_ && !jobs_.empty()); };
-  while (!ready()) {
-    const bool cache_over_limit = !cache_.trim();
-    if (!cache_over_limit && !trim_pending_) {
-      condition_.wait(lock);
-    } else if (condition_.wait_for(lock, trim_interval) == std::cv_status::timeout &&
-               std::exchange(trim_pending_, false)) {
-      lock.unlock();
+  std::optional<Clock::time_point> trim_at;
+  while (!stopping_) {
+    if (auto job = first_job()) return job;
+    cache_.trim();
+    if (std::exchange(trim_pending_, false)) trim_at = Clock::now() + trim_delay;
+    wake_->wait_until(trim_at);
+    if (trim_at && Clock::now() >= *trim_at) {
       return_free_memory();
-      lock.lock();
+      trim_at.reset();
     }
   }
-  return stopping_ ? nullptr : jobs_.front();
+  return nullptr;
+}
+
+/// On a device that is not lost.
+std::shared_ptr<SceneLoader::Job> SceneLoader::first_job() {
+  const std::lock_guard lock(mutex_);
+  const auto found = std::ranges::find_if(
+      jobs_, [&](const auto& job) { return !lost_devices_.contains(job->key.device); });
+  return found == jobs_.end() ? nullptr : *found;
 }
 
 void SceneLoader::run_job(Job& job) {
@@ -264,34 +272,53 @@ std::string SceneLoader::sessions_of(const Job& job) {
   return names;
 }
 
-/// The job stays the first one and runs again on the recovered device.
+/// The job stays and runs again on the recovered device.
 void SceneLoader::report_device_loss(Job& job) {
   {
     const std::lock_guard lock(mutex_);
-    device_ready_ = false;  // before the report: the device may be recovered at once
+    // Before the report: the device may be recovered at once.
+    lost_devices_.insert(job.key.device);
   }
-  if (on_device_loss_) on_device_loss_();
+  if (on_device_loss_) on_device_loss_(job.key.device);
   if (++job.device_losses == max_device_losses) {
     finish(job,
            protocol::error::not_ready("the device was lost repeatedly while loading this scene"));
   }
 }
 
-void SceneLoader::take_new_device() {
-  cache_.clear();
+void SceneLoader::take_new_device(std::size_t device) {
+  cache_.clear(device);
   {
     const std::lock_guard lock(mutex_);
-    device_ready_ = true;
+    lost_devices_.erase(device);
   }
-  condition_.notify_one();
+  wake_->notify();
 }
 
+/// Another device that has the scene spares the import.
 LoadedScene SceneLoader::load_scene(Job& job) {
+  DeviceMigration& migration = devices_.loop(job.key.device).migration();
+  std::vector<scene::SourceFile> sources;
+  LoadedScene loaded;
+  if (auto elsewhere = cache_.find_elsewhere(job.key)) {
+    report_progress(job, "uploading", import_fraction);
+    loaded = std::move(elsewhere->scene);
+    sources = std::move(elsewhere->sources);
+    loaded.resources = migration(loaded.resources);
+  } else {
+    loaded = import_scene(job, sources);
+    migration.add(loaded.resources);
+  }
+  throw_if_cancelled(job);
+  loaded.device_bytes = render::memory_bytes(*loaded.resources);
+  return cache_.add(job.key, std::move(loaded), std::move(sources));
+}
+
+LoadedScene SceneLoader::import_scene(Job& job, std::vector<scene::SourceFile>& sources) {
   const auto checkpoint = [&](std::string_view stage, float fraction) {
     throw_if_cancelled(job);
     report_progress(job, stage, fraction);
   };
-  std::vector<scene::SourceFile> sources;
   if (!job.key.environment.empty()) sources.push_back(scene::examine_file(job.key.environment));
   checkpoint("reading", 0.0f);
   const auto environment = environments_.environment_at(job.key.environment);
@@ -303,16 +330,15 @@ LoadedScene SceneLoader::load_scene(Job& job) {
       nullptr, job.key.choice));
   sources.insert(sources.end(), imported->sources.begin(), imported->sources.end());
   LoadedScene loaded{.name = job.entry.name};
-  loaded.resources = engine_.upload_and_free_pixels(
+  render::Engine& engine = devices_.engine(job.key.device);
+  loaded.resources = engine.upload_and_free_pixels(
       std::move(imported), environment, [&](std::string_view stage, float fraction) {
         checkpoint(stage, import_fraction + (1.0f - import_fraction) * fraction);
       });
   loaded.scene = render::scene_of(*loaded.resources);
-  throw_if_cancelled(job);
   loaded.environment = job.key.environment.filename().string();
   loaded.host_bytes = loaded.scene->bytes();
-  loaded.device_bytes = render::memory_bytes(*loaded.resources);
-  return cache_.add(job.key, std::move(loaded), std::move(sources));
+  return loaded;
 }
 
 /// Shows the scene in every session that waits for it, and answers the requests.

@@ -1,12 +1,12 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -19,11 +19,9 @@
 #include "session/library/scene_catalogue.hpp"
 #include "session/session.hpp"
 
-namespace heliograph::render {
-class Engine;
-}
-
 namespace heliograph::session {
+
+class RenderDevices;
 
 struct LoaderOptions {
   std::optional<std::filesystem::path> environment;  // of every scene, instead of its own
@@ -34,12 +32,14 @@ struct LoaderOptions {
 /// Loads scenes beside rendering, one after the other, and shows them in sessions when they are
 /// complete. On failure a session keeps its scene. A newer request of a session replaces its older
 /// one, even if that is being loaded; requests of a session that ends fail. Requests for the same
-/// scene share one load, and loaded scenes stay in a cache. Thread safe.
+/// scene on the same device share one load, and loaded scenes stay in a cache. A scene goes to the
+/// device of the session that shows it; another device takes it over without another import. Thread
+/// safe.
 class SceneLoader {
  public:
   using Completion = std::function<void(protocol::Result<protocol::SceneInfo>)>;
 
-  SceneLoader(render::Engine& engine, const SceneCatalogue& catalogue, LoaderOptions options);
+  SceneLoader(RenderDevices& devices, const SceneCatalogue& catalogue, LoaderOptions options);
   ~SceneLoader() { stop(); }
   SceneLoader(const SceneLoader&) = delete;
   SceneLoader& operator=(const SceneLoader&) = delete;
@@ -54,12 +54,14 @@ class SceneLoader {
   /// Ends the thread and the running load; all requests fail.
   void stop();
 
-  /// Called on the loading thread when a load throws render::DeviceLost; `take_new_device` must
-  /// follow. Set before the first load.
-  void on_device_loss(std::function<void()> callback) { on_device_loss_ = std::move(callback); }
+  /// Called with the index of the device on the loading thread when a load throws
+  /// render::DeviceLost; `take_new_device` must follow. Set before the first load.
+  void on_device_loss(std::function<void(std::size_t)> callback) {
+    on_device_loss_ = std::move(callback);
+  }
   /// The device was recreated: drops the cache of the lost one, and restarts a load that the loss
   /// interrupted.
-  void take_new_device();
+  void take_new_device(std::size_t device);
 
   CacheTotals cache_totals() const { return cache_.totals(); }
 
@@ -83,10 +85,12 @@ class SceneLoader {
 
   void run();
   std::shared_ptr<Job> next_job();
+  std::shared_ptr<Job> first_job();
   void drop(Job& job);
   void run_job(Job& job);
   std::string sessions_of(const Job& job);
   LoadedScene load_scene(Job& job);
+  LoadedScene import_scene(Job& job, std::vector<scene::SourceFile>& sources);
   void report_device_loss(Job& job);
   void finish(Job& job, const protocol::Result<LoadedScene>& outcome);
   std::vector<Waiter> remove_waiters(const std::function<bool(const Session&)>& matches,
@@ -96,18 +100,18 @@ class SceneLoader {
   void report_progress(Job& job, std::string_view stage, float fraction);
   void throw_if_cancelled(const Job& job);
 
-  render::Engine& engine_;
+  RenderDevices& devices_;
   const SceneCatalogue& catalogue_;
   EnvironmentSource environments_;
   const LoaderOptions options_;
+  const std::shared_ptr<WakeEvent> wake_ = std::make_shared<WakeEvent>();  // of the thread
   SceneCache cache_;
-  std::function<void()> on_device_loss_;
+  std::function<void(std::size_t)> on_device_loss_;
 
   std::mutex mutex_;
-  std::condition_variable condition_;
-  std::deque<std::shared_ptr<Job>> jobs_;  // the first may be running
-  bool device_ready_ = true;               // guarded by mutex_
-  bool trim_pending_ = false;              // used by the loading thread only
+  std::deque<std::shared_ptr<Job>> jobs_;  // guarded by mutex_, as is the next one
+  std::set<std::size_t> lost_devices_;
+  bool trim_pending_ = false;  // used by the loading thread only
   std::atomic<bool> stopping_ = false;
   std::thread thread_;
 };

@@ -11,28 +11,33 @@
 #include "protocol/json/jsonrpc.hpp"
 #include "render/api/device_lost.hpp"
 #include "session/event_log.hpp"
-#include "session/rendering/device_migration.hpp"
 
 namespace heliograph::session {
 namespace {
 
 // One frame may wait for each that is being encoded: the renderer stays at most one ahead.
 constexpr std::size_t queued_frames_per_thread = 1;
-constexpr unsigned most_encoding_threads = 8;
-constexpr unsigned most_preparing_threads = 4;
+constexpr std::size_t most_encoding_threads = 8;
+constexpr std::size_t most_preparing_threads = 4;
 constexpr std::size_t max_queued_captures = 4;
 constexpr std::size_t max_queued_preparations = 64;
 constexpr std::chrono::milliseconds pause_without_memory{100};
+constexpr std::chrono::seconds free_memory_interval{1};
+
+/// Those of one of so many loops.
+std::size_t processors(std::size_t loops) {
+  return std::thread::hardware_concurrency() / loops;
+}
 
 /// On a GPU half of the processors encode; where they draw the frames, one thread is enough.
-std::size_t encoding_threads(const render::DeviceInfo& device) {
+std::size_t encoding_threads(const render::DeviceInfo& device, std::size_t loops) {
   if (device.type == protocol::DeviceType::cpu) return 1;
-  return std::clamp(std::thread::hardware_concurrency() / 2, 1u, most_encoding_threads);
+  return std::clamp<std::size_t>(processors(loops) / 2, 1, most_encoding_threads);
 }
 
 /// The driver compiles on each of its own; frames need the other processors.
-std::size_t preparing_threads() {
-  return std::clamp(std::thread::hardware_concurrency() / 4, 1u, most_preparing_threads);
+std::size_t preparing_threads(std::size_t loops) {
+  return std::clamp<std::size_t>(processors(loops) / 4, 1, most_preparing_threads);
 }
 
 void log_shaders(const render::ShaderReport& report) {
@@ -47,13 +52,18 @@ void log_shaders(const render::ShaderReport& report) {
 
 }  // namespace
 
-RenderLoop::RenderLoop(render::Engine& engine, Clock::duration release_after)
+RenderLoop::RenderLoop(render::Engine& engine, Measurements& measurements,
+                       const RenderLoopOptions& options)
     : engine_(engine),
-      release_after_(release_after),
-      encoder_("encoder", queued_frames_per_thread * encoding_threads(engine.device()),
-               encoding_threads(engine.device())),
+      release_after_(options.release_after),
+      measurements_(measurements),
+      migration_(engine),
+      free_memory_(render::free_memory(engine)),
+      encoder_("encoder",
+               queued_frames_per_thread * encoding_threads(engine.device(), options.loops),
+               encoding_threads(engine.device(), options.loops)),
       capture_writer_("capture writer", max_queued_captures),
-      preparer_("frame preparer", max_queued_preparations, preparing_threads()),
+      preparer_("frame preparer", max_queued_preparations, preparing_threads(options.loops)),
       thread_([this] { run(); }) {
   engine_.on_shader_change([wake = wake_](const render::ShaderReport& report) {
     log_shaders(report);
@@ -80,10 +90,11 @@ std::shared_ptr<Session> RenderLoop::open(SessionOptions options, PixelShare pix
                                                          .jpeg = jpeg_,
                                                          .capture_writer = capture_writer_,
                                                          .preparer = preparer_,
+                                                         .migration = migration_,
                                                          .measurements = measurements_},
                                             std::make_shared<WakeEvent>(wake_));
   std::shared_ptr<Session> session = view->session();
-  if (open_views().empty()) {
+  if (session->name() == protocol::main_session) {
     try {
       view->prepare();
     } catch (const render::DeviceLost&) {
@@ -110,6 +121,19 @@ void RenderLoop::close(const Session& session) {
     views_.erase(closed);
   }
   wake_->notify();
+}
+
+DeviceLoad RenderLoop::load() const {
+  const std::lock_guard lock(mutex_);
+  return {.ready = device_ready_,
+          .busy = busy_.at(Clock::now()),
+          .sessions = views_.size(),
+          .free_memory = free_memory_};
+}
+
+DeviceTotals RenderLoop::device_totals() const {
+  const std::lock_guard lock(mutex_);
+  return device_totals_;
 }
 
 void RenderLoop::on_first_frame(std::function<void()> callback) {
@@ -214,6 +238,16 @@ bool RenderLoop::finish_frame() {
 void RenderLoop::frame_finished(SessionView& view, Clock::time_point begun) {
   device_free_ = Clock::now();
   fair_share_.charge(&view, begun, device_free_);
+  {
+    const std::lock_guard lock(mutex_);
+    busy_.add(begun, device_free_);
+    if (device_free_ >= free_memory_at_ + free_memory_interval) {
+      free_memory_at_ = device_free_;
+      free_memory_ = render::free_memory(engine_);
+    }
+    ++device_totals_.frames;
+    device_totals_.seconds += std::chrono::duration<double>(device_free_ - begun).count();
+  }
   if (!has_rendered_ && view.has_rendered()) report_first_frame();
 }
 
@@ -270,8 +304,7 @@ bool RenderLoop::recover_device(const Views& views) {
   try {
     for (const auto& view : views) view->release_renderer();
     engine_.recreate();
-    DeviceMigration migration(engine_);
-    for (const auto& view : views) view->session()->migrate(migration);
+    for (const auto& view : views) view->session()->migrate(migration_);
   } catch (const std::exception& failure) {
     on_device_lost(failure.what());
     return false;

@@ -9,23 +9,37 @@
 #include <thread>
 #include <vector>
 
+#include "render/api/devices.hpp"
+#include "session/devices/device_migration.hpp"
+#include "session/devices/placement.hpp"
 #include "session/rendering/fair_share.hpp"
 #include "session/rendering/retry_backoff.hpp"
 #include "session/rendering/session_view.hpp"
 
 namespace heliograph::session {
 
+struct RenderLoopOptions {
+  Clock::duration release_after{};  // sessions without viewers for so long release their renderer
+  std::size_t loops = 1;            // that share the processors, of a device each
+};
+
+/// What a device has done since the start.
+struct DeviceTotals {
+  std::uint64_t frames = 0;
+  double seconds = 0.0;  // for which it rendered
+};
+
 /// The thread that renders all sessions of a device, in equal shares of its time, and the threads
 /// that encode beside it. It sleeps while there is nothing to do.
 class RenderLoop {
  public:
-  /// Sessions without viewers for `release_after` release their renderer.
-  RenderLoop(render::Engine& engine, Clock::duration release_after);
+  /// Both must outlive it.
+  RenderLoop(render::Engine& engine, Measurements& measurements, const RenderLoopOptions& options);
   ~RenderLoop() { stop(); }
   RenderLoop(const RenderLoop&) = delete;
   RenderLoop& operator=(const RenderLoop&) = delete;
 
-  /// Opens a session; it is rendered from now on. The first one gets its renderer at once and
+  /// Opens a session; it is rendered from now on. The main one gets its renderer at once and
   /// renders a frame without viewers, which shows that everything works.
   /// @throws std::invalid_argument when the renderer refuses the settings
   std::shared_ptr<Session> open(SessionOptions options, PixelShare pixels);
@@ -44,7 +58,11 @@ class RenderLoop {
   void on_new_device(std::function<void()> callback);
   /// Ends the threads and everything that waits for them. No callback is called afterwards.
   void stop();
-  RenderTotals totals() const { return measurements_.totals(); }
+  /// To this device.
+  DeviceMigration& migration() { return migration_; }
+  /// What decides whether the next session comes here.
+  DeviceLoad load() const;
+  DeviceTotals device_totals() const;
   /// Whether the image of a session moves, or did until recently.
   bool images_move() const { return still_for() < motion_end_delay; }
   /// Since the image of a session has moved last.
@@ -77,10 +95,16 @@ class RenderLoop {
   const Clock::duration release_after_;
   FairShare fair_share_;  // of the render thread
   const std::shared_ptr<WakeEvent> wake_ = std::make_shared<WakeEvent>();
-  Measurements measurements_;
-  std::mutex mutex_;  // guards views_, closed_ and the callbacks; never held while rendering
+  Measurements& measurements_;
+  DeviceMigration migration_;
+  mutable std::mutex
+      mutex_;  // guards views_, closed_ and the callbacks; never held while rendering
   Views views_;
-  Views closed_;  // removed by the render thread, which may be using them
+  Views closed_;    // removed by the render thread, which may be using them
+  BusyShare busy_;  // guarded by mutex_, as are the next ones
+  DeviceTotals device_totals_;
+  std::optional<std::uint64_t> free_memory_;  // of the device, of the latest second with frames
+  Clock::time_point free_memory_at_{};
   std::function<void()> on_first_frame_;
   std::function<void()> on_new_device_;
   std::atomic<bool> has_rendered_ = false;

@@ -123,6 +123,7 @@ SessionView::Work SessionView::advance(bool may_draw) {
     return Work::none;
   }
   keep_buffers();
+  if (begin_migration()) return Work::small;
   if (session_->timeline().in_lockstep()) return advance_step(may_draw);
   newest_stepped_ = false;
   adopt_state();
@@ -281,9 +282,22 @@ bool SessionView::is_preparing() {
 
 /// Frames of other sessions do not wait for a new session, or one that changes its size or passes.
 bool SessionView::begin_preparing() {
-  if (!renderer_->can_prepare()) return false;
-  const auto task = std::make_shared<std::packaged_task<void()>>(
-      [renderer = renderer_.get()] { renderer->prepare(); });
+  return renderer_->can_prepare() &&
+         prepare_beside([renderer = renderer_.get()] { renderer->prepare(); });
+}
+
+/// A copy of a session may be on another device: its scene is uploaded there first.
+bool SessionView::begin_migration() {
+  if (session_->version() == state_.version || session_->is_on(services_.migration)) {
+    return false;
+  }
+  return prepare_beside(
+      [session = session_, &migration = services_.migration] { session->migrate(migration); });
+}
+
+/// False if there is no room for the task.
+bool SessionView::prepare_beside(std::function<void()> prepare) {
+  const auto task = std::make_shared<std::packaged_task<void()>>(std::move(prepare));
   std::future<void> preparing = task->get_future();
   const bool posted = services_.preparer.post([task, wake = wake_] {
     (*task)();

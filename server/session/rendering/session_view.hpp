@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <future>
 #include <memory>
 #include <optional>
@@ -14,6 +15,8 @@
 
 namespace heliograph::session {
 
+class DeviceMigration;
+
 /// What all views of one device share.
 struct ViewServices {
   WakeEvent& wake;                // of the render thread
@@ -22,6 +25,7 @@ struct ViewServices {
   stream::JpegEncoder& jpeg;
   Worker& capture_writer;  // of files, which take longer
   Worker& preparer;        // of what new frames are rendered with
+  DeviceMigration& migration;
   Measurements& measurements;
 };
 
@@ -92,6 +96,8 @@ class SessionView {
   Work advance_step(bool may_draw);
   bool is_preparing();
   bool begin_preparing();
+  bool begin_migration();
+  bool prepare_beside(std::function<void()> task);
   void begin_next_frame();
   void begin_frame(double seconds);
   std::optional<int> wanted_jpeg(ViewState state);
@@ -111,9 +117,9 @@ class SessionView {
   };
   std::optional<BegunFrame> begun_;
   std::unique_ptr<render::Renderer> renderer_;  // null while no frames are needed
-  std::future<void> preparing_;                 // the renderer, which is not touched meanwhile
-  Clock::time_point needed_at_;                 // last time that it was needed
-  bool first_frame_due_ = false;                // rendered without viewers
+  std::future<void> preparing_;   // of the renderer or the scene, which are not touched meanwhile
+  Clock::time_point needed_at_;   // last time that it was needed
+  bool first_frame_due_ = false;  // rendered without viewers
 
   RenderState state_;
   Clock::time_point camera_moved_at_;

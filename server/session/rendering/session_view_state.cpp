@@ -4,8 +4,8 @@
 
 #include "scene/animation/pose.hpp"
 #include "scene/camera.hpp"
+#include "session/devices/device_migration.hpp"
 #include "session/event_log.hpp"
-#include "session/rendering/device_migration.hpp"
 #include "session/rendering/session_view.hpp"
 
 namespace heliograph::session {
@@ -32,10 +32,9 @@ void SessionView::adopt_state() {
 
 void SessionView::adopt(RenderState next) {
   const RenderState before = std::exchange(state_, std::move(next));
-  const auto lost = [&](const auto& object) { return object && !engine_.owns(*object); };
-  if (lost(state_.resources) || lost(state_.environment)) {
-    // It was loaded just before the device was lost.
-    DeviceMigration migration(engine_);
+  DeviceMigration& migration = services_.migration;
+  if (!migration.is_done(state_.resources) || !migration.is_done(state_.environment)) {
+    // It was loaded just before the device was lost, or for another device.
     session_->migrate(migration);
     state_ = session_->render_state();
   }

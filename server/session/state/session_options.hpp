@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "protocol/settings/settings.hpp"
@@ -24,6 +25,8 @@ struct SessionOptions {
   protocol::Settings settings;
   SessionLimits limits;
   std::string follows;  // the session whose scene, settings and time it has; empty: its own
+  /// The index of the device that renders it; empty: where it is placed when it is opened.
+  std::optional<std::size_t> device;
   /// No scene will be loaded at the start: the first frame does not wait for one.
   bool starts_empty = false;
 };

@@ -91,14 +91,17 @@ TEST_F(Store, AnEndIsToldUntilItIsTaken) {
   const std::string id = *store.create(create, 1.0);
   store.begin(1.0);
   EXPECT_FALSE(store.due_webhook(2.0));
+  EXPECT_FALSE(store.next_webhook());
   store.end(id, {.state = JobState::done, .failures = {}}, 3.0, 100.0);
   ASSERT_TRUE(store.due_webhook(3.0));
   EXPECT_EQ(store.due_webhook(3.0)->url, "https://example.org/done");
   store.webhook_sent(id, 8.0);
   EXPECT_FALSE(store.due_webhook(7.9));
+  EXPECT_EQ(store.next_webhook(), 8.0);
   EXPECT_EQ(store.due_webhook(8.0)->attempts, 1);
   store.webhook_sent(id, std::nullopt);
   EXPECT_FALSE(store.due_webhook(1e9));
+  EXPECT_FALSE(store.next_webhook());
 }
 
 TEST_F(Store, ExpiredJobsAreForgottenWithTheirFiles) {

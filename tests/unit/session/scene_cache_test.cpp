@@ -83,5 +83,51 @@ TEST(SceneCache, ReplacesASceneOfTheSameKey) {
   EXPECT_EQ(cache.totals().bytes, 300u);
 }
 
+SceneKey on_device(SceneKey key, std::size_t device) {
+  key.device = device;
+  return key;
+}
+
+TEST(SceneCache, HasASceneOncePerDeviceWithTheHostsPartOnce) {
+  SceneCache cache(1000);
+  const LoadedScene scene = scene_of(100);
+  cache.add(key("a"), scene, {});
+  EXPECT_FALSE(cache.find(on_device(key("a"), 1)));
+  const auto elsewhere = cache.find_elsewhere(on_device(key("a"), 1));
+  ASSERT_TRUE(elsewhere);
+  EXPECT_EQ(elsewhere->scene.scene, scene.scene);
+  EXPECT_FALSE(cache.find_elsewhere(on_device(key("b"), 1)));
+  cache.add(on_device(key("a"), 1), elsewhere->scene, {});
+  EXPECT_EQ(cache.totals().bytes, 100u + 75u);
+  cache.clear(0);
+  EXPECT_FALSE(cache.find(key("a")));
+  EXPECT_TRUE(cache.find(on_device(key("a"), 1)));
+  EXPECT_EQ(cache.totals().bytes, 100u);
+}
+
+TEST(SceneCache, FindsNoSceneElsewhereWhoseFileChanged) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.write("box.glb", "first");
+  SceneCache cache(1000);
+  cache.add(key("a"), scene_of(100), {scene::examine_file(file)});
+  EXPECT_TRUE(cache.find_elsewhere(on_device(key("a"), 1)));
+  folder.write("box.glb", "second");
+  EXPECT_FALSE(cache.find_elsewhere(on_device(key("a"), 1)));
+}
+
+TEST(SceneCache, TellsWhenASceneIsNotShownAnyMore) {
+  const auto released = std::make_shared<WakeEvent>();
+  SceneCache cache(0, released);
+  std::optional<LoadedScene> shown = cache.add(key("a"), scene_of(100), {});
+  auto part = shown->scene;
+  released->take();
+  shown.reset();
+  EXPECT_FALSE(released->take());
+  part.reset();
+  EXPECT_TRUE(released->take());
+  EXPECT_TRUE(cache.trim());
+  EXPECT_EQ(cache.totals().entries, 0u);
+}
+
 }  // namespace
 }  // namespace heliograph::session
