@@ -26,7 +26,7 @@ bool shows_state_since(const ReadableFrame& frame, Clock::time_point moment) {
   return frame.shows_state && (!frame.state.animation.playing || frame.began >= moment);
 }
 
-/// Whether nothing but samples of a reference that nobody has asked for is still to come.
+/// Whether only samples of a reference that was not asked for are still to come.
 bool has_hybrid_samples(const protocol::Settings& settings, const render::Frame& frame) {
   return settings.reference.use == protocol::ReferenceUse::automatic &&
          frame.samples >= static_cast<std::uint32_t>(settings.accumulation.max_samples);
