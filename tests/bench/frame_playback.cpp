@@ -51,7 +51,7 @@ FramePlayback::FramePlayback(session::SessionHost& host, std::vector<render::Fra
                   .jpeg = jpeg_,
                   .measurements = measurements_,
                   .wake = wakeup_,
-                  .tracer = host.engine().tracer(),
+                  .tracer = host.devices().engine(0).tracer(),
                   .read_pixels = [] { return std::vector<std::uint8_t>(); }}),
       interval_(
           std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(1.0 / rate))) {

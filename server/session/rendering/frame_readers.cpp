@@ -26,12 +26,6 @@ bool shows_state_since(const ReadableFrame& frame, Clock::time_point moment) {
   return frame.shows_state && (!frame.state.animation.playing || frame.began >= moment);
 }
 
-/// Whether only samples of a reference that was not asked for are still to come.
-bool has_hybrid_samples(const protocol::Settings& settings, const render::Frame& frame) {
-  return settings.reference.use == protocol::ReferenceUse::automatic &&
-         frame.samples >= static_cast<std::uint32_t>(settings.accumulation.max_samples);
-}
-
 /// An error where there is no memory for the file: its caller waits for an answer.
 Result<Capture> encoded(const CaptureContent& content, protocol::ImageFormat format,
                         std::uint32_t samples) {
@@ -47,6 +41,11 @@ Result<Capture> encoded(const CaptureContent& content, protocol::ImageFormat for
 }
 
 }  // namespace
+
+bool lacks_reference_alone(const protocol::Settings& settings, const render::Frame& frame) {
+  return settings.reference.use == protocol::ReferenceUse::automatic &&
+         frame.samples >= static_cast<std::uint32_t>(settings.accumulation.max_samples);
+}
 
 FrameReaders::FrameReaders(Session& session, Worker& capture_writer, Measurements& measurements,
                            WakeEvent& written)
@@ -147,7 +146,8 @@ bool FrameReaders::is_ready(const PendingCapture& capture, const ReadableFrame& 
   if (state.animation.playing || !frame.renderer.needs_frame()) return true;
   const std::optional<std::uint32_t>& samples = capture.request.samples;
   if (samples) return newest.samples >= *samples;
-  return is_complete_at_once(capture.request.buffer) || has_hybrid_samples(state.settings, newest);
+  return is_complete_at_once(capture.request.buffer) ||
+         lacks_reference_alone(state.settings, newest);
 }
 
 /// False if too many files are being written already.
