@@ -145,9 +145,8 @@ bool FrameReaders::is_ready(const PendingCapture& capture, const ReadableFrame& 
   if (newest.width != state.width || newest.height != state.height) return false;
   if (state.animation.playing || !frame.renderer.needs_frame()) return true;
   const std::optional<std::uint32_t>& samples = capture.request.samples;
-  if (samples) return newest.samples >= *samples;
-  return is_complete_at_once(capture.request.buffer) ||
-         lacks_reference_alone(state.settings, newest);
+  if (lacks_reference_alone(state.settings, newest)) return true;
+  return samples ? newest.samples >= *samples : is_complete_at_once(capture.request.buffer);
 }
 
 /// False if too many files are being written already.

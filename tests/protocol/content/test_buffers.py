@@ -134,6 +134,8 @@ class TheListFollows(Sessions, ServerTestCase):
     def test_the_reference(self):
         self.own("reference")
         hybrid = ("gbuffer.normals", "specular.denoised")
+        self.patch("reference", {"reference": {"use": "off"}})
+        self.assert_complete("reference", hybrid, ["reference"])
         self.server.call("reference.start", {"samples": 2}, session="reference")
         self.assert_complete("reference", ["reference"], hybrid)
         self.server.call("reference.stop", session="reference")

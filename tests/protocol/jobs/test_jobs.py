@@ -226,7 +226,9 @@ class Jobs(ServerTestCase):
             deadline = time.monotonic() + 10
             while (states := self.states_told(viewer, job))[-1:] != ["done"] and time.monotonic() < deadline:
                 await asyncio.sleep(0.02)
-            self.assertEqual((states[0], states[-1]), ("queued", "done"))
+            # A newer state replaces one that waits to be sent.
+            self.assertIn(states[0], ("queued", "running"))
+            self.assertEqual(states[-1], "done")
             listed = await viewer.call("job.list", {"limit": 1})
             self.assertEqual(len(listed["jobs"]), 1)
 
