@@ -22,6 +22,7 @@ def taken():
     kinds = [(name, kind) for kind, name in
              re.findall(rf'page\.(counter|gauge|histogram)\(\s*"({NAME})"', text)]
     kinds += re.findall(rf'page\.describe\(\s*"({NAME})",\s*"[^"]*",\s*"(\w+)"', text)
+    kinds += re.findall(rf'each\("({NAME})",\s*"[^"]*",\s*"(\w+)"', text)
     return {name + end for name, kind in kinds
             for end in (("_bucket", "_sum", "_count") if kind == "histogram" else ("",))}
 

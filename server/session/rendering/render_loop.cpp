@@ -185,7 +185,7 @@ void RenderLoop::remove_closed() {
 
 /// Does the short work of all sessions first, so that it does not wait for the frame of another
 /// session; then the first session in order of turns that has a frame due renders it. While images
-/// move, references that were not asked for wait.
+/// move, the references of static views wait.
 bool RenderLoop::advance_next(const Views& views) {
   std::vector<FairShare::Key> ready;
   for (const auto& view : views) {

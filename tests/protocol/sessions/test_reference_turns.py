@@ -12,7 +12,8 @@ SECONDS = 2
 class ReferenceTurns(ServerTestCase):
     @classmethod
     def setUpClass(cls):
-        cls.server = Server("--scene", "mirror", "--set", "reference.samples=65536")
+        cls.server = Server("--scene", "mirror", "--set", "reference.use=when_static",
+                            "--set", "reference.scope=full", "--set", "reference.samples=65536")
 
     def rendered(self):
         """Frames of all sessions so far."""
