@@ -22,9 +22,6 @@ struct ReadableFrame {
   Clock::time_point began;      // when its rendering began
 };
 
-/// Whether a static view has all samples but those of the path traced reference that follow.
-bool lacks_reference_alone(const protocol::Settings& settings, const render::Frame& frame);
-
 /// Captures and probes that wait for a frame of one session. For the render thread.
 class FrameReaders {
  public:
