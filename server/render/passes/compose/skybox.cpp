@@ -7,16 +7,21 @@
 
 namespace heliograph::render {
 
+SeenBackground::SeenBackground(const FrameInputs& in)
+    : chosen_(in.moving.environment().background(in.settings.background)), moving_(in.moving) {}
+
+/// The environment is seen as it was read: with its sun.
+kernels::RadianceMap SeenBackground::map() const {
+  return kernels::view_map(chosen_ ? chosen_->map : *moving_.environment().source());
+}
+
 gpu::ImageRef draw_skybox(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer) {
   const auto background = plan.image(skybox_buffers.radiance.name, VK_FORMAT_R32G32B32A32_SFLOAT);
   plan.pass("skybox", in.program(shaders::skybox))
       .bind<kernels::SkyboxBindings>({.motion = gbuffer.motion, .background = background})
       .dispatch(gpu::each_pixel())
-      .host([in, chosen = in.moving.environment().background(in.settings.background)](
-                const kernels::SkyboxJob::Pass& pass) {
-        // The environment is seen as it was read: with its sun.
-        const scene::Environment& seen = chosen ? chosen->map : *in.moving.environment().source();
-        kernels::skybox({pass, in.constants, kernels::view_map(seen)});
+      .host([in, seen = SeenBackground(in)](const kernels::SkyboxJob::Pass& pass) {
+        kernels::skybox({pass, in.constants, seen.map()});
       });
   return background;
 }

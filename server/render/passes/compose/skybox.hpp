@@ -1,6 +1,10 @@
 #pragma once
 
+#include <memory>
+
 #include "render/passes/gbuffer/gbuffer.hpp"
+#include "render/resources/environment/background.hpp"
+#include "render/resources/host_tables.hpp"
 
 namespace heliograph::render {
 
@@ -8,6 +12,17 @@ inline constexpr struct SkyboxBuffers {
   BufferDescription radiance{"skybox", ViewColors::radiance,
                              "Radiance of the background behind the scene."};
 } skybox_buffers{};
+
+/// What the camera sees where nothing is, in the frames of one plan. The inputs' scene outlives it.
+class SeenBackground {
+ public:
+  explicit SeenBackground(const FrameInputs& in);
+  kernels::RadianceMap map() const;
+
+ private:
+  std::shared_ptr<const Background> chosen_;  // null: the environment
+  const MovingScene& moving_;
+};
 
 /// Linear radiance of the background where no surface was drawn; elsewhere black.
 gpu::ImageRef draw_skybox(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer);

@@ -5,6 +5,7 @@
 #include "render/kernels/reference/reference.hpp"
 #include "render/kernels/specular.hpp"
 #include "render/passes/blend/blend_surfaces.hpp"
+#include "render/passes/compose/skybox.hpp"
 #include "render/passes/formats.hpp"
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
 #include "render/passes/rays/ray_stream.hpp"
@@ -33,6 +34,7 @@ class PathRounds {
              gpu::ImageRef radiance, gpu::BufferRef paths, kernels::Rows rows)
       : plan_(plan),
         in_(in),
+        background_(in),
         ground_(ground),
         rows_(rows),
         shines_((in.moving.features() & shared::scene_emissive) != 0),
@@ -84,13 +86,11 @@ class PathRounds {
                                                  .radiance = radiance_,
                                                  .ground_shade = ground_})
         .constants(shared::ReferenceConstants{round, bounces, 1, 1.0f})
-        .host([in = in_, shines = shines_](const kernels::ReferenceBounceJob::Pass& pass) {
+        .host([in = in_, shines = shines_,
+               seen = background_](const kernels::ReferenceBounceJob::Pass& pass) {
           const auto lights = frame_lights(in.tables.lights, in.constants);
-          const LitEnvironment& environment = in.moving.environment();
-          const auto chosen = environment.background(in.settings.background);
-          const scene::Environment& seen = chosen ? chosen->map : *environment.source();
           kernels::reference_bounce({pass, in.constants, lit_scene(in, lights),
-                                     environment_cells(in), kernels::view_map(seen), shines,
+                                     environment_cells(in), seen.map(), shines,
                                      frame_blending(in)});
         });
   }
@@ -108,6 +108,7 @@ class PathRounds {
 
   gpu::FramePlan& plan_;
   const FrameInputs& in_;
+  SeenBackground background_;
   gpu::BufferRef ground_;
   kernels::Rows rows_;
   bool shines_;
