@@ -143,16 +143,6 @@ class BlendedLayer {
     });
   }
 
-  /// The factor on what is seen through the surface.
-  static HWY_INLINE Float3 seen_behind(const Surface& s, const Material& m) {
-    const Float open = one() - s.alpha;
-    if constexpr (Surface::layered) {
-      return multiply_add(m.transmitted, s.alpha, {open, open, open});
-    } else {
-      return {open, open, open};
-    }
-  }
-
   const shared::FrameConstants& frame_;
   const LitScene& scene_;
   BlendedPixels pixels_;

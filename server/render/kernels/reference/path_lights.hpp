@@ -38,16 +38,6 @@ HWY_INLINE Float density_of_direction(Float density, Float away, Float cosine) {
   return density * away * away / at_least(hn::Abs(cosine), 1e-6f);
 }
 
-/// The factor on what is seen through a blended surface: shaders/lib/scene/hit_material.glsl.
-HWY_INLINE Float3 seen_behind(const SurfaceLanes& s, const MaterialLanes&) {
-  const Float open = one() - s.alpha;
-  return {open, open, open};
-}
-HWY_INLINE Float3 seen_behind(const LayeredSurfaceLanes& s, const LayeredMaterial<Float>& m) {
-  const Float open = one() - s.alpha;
-  return multiply_add(m.transmitted, s.alpha, {open, open, open});
-}
-
 /// `Surface`: SurfaceLanes, or LayeredSurfaceLanes. References outlive it. All rays begin where
 /// `from` does.
 template <class Surface>
@@ -65,11 +55,11 @@ class PathLights {
   HWY_INLINE void add_light(const At& at, RayLanes from, Mask lit, RayBatch& to) const {
     const auto lights = job_.lit_scene.lights;
     const SquareTexels& ltc = job_.lit_scene.tables.ltc;
-    Float pick = numbers_.one(1, at.pixel);
+    Float pick = numbers_.light.at(at.pixel);
     LightChoice choice = choose_light(lights, ltc, at.m, at.position, lit, pick);
     const Mask valid = hn::And(lit, hn::Gt(choice.total, zero()));
     if (none(valid)) return;
-    const Float2 u = numbers_.two(2, at.pixel);
+    const Float2 u = numbers_.light_point.at(at.pixel);
     const bool areas = std::exchange(choice.areas, false);
     aim(lights, choice, at.m, at.position, u, pick, valid, from);
     if (areas) aim_at_areas(at, u, valid, choice, from);
@@ -81,7 +71,7 @@ class PathLights {
   /// Along a direction drawn from the environment's own table.
   HWY_INLINE void add_sky(const At& at, RayLanes from, Mask lanes, RayBatch& to) const {
     const EnvironmentSample sky =
-        cells_.sample(numbers_.two(6, at.pixel), numbers_.two(7, at.pixel));
+        cells_.sample(numbers_.sky_cell.at(at.pixel), numbers_.sky_point.at(at.pixel));
     from.direction = sky.direction;
     from.t_max = number(1e30f);
     const Mask above = hn::And(lanes, hn::Gt(dot(sky.direction, at.m.geometric), zero()));
@@ -100,7 +90,7 @@ class PathLights {
                                RayBatch& to) const {
     const SceneView& scene = job_.lit_scene.scene;
     const HitLanes drawn =
-        draw_emissive(scene, numbers_.two(8, at.pixel), numbers_.two(9, at.pixel));
+        draw_emissive(scene, numbers_.triangle.at(at.pixel), numbers_.triangle_point.at(at.pixel));
     const EmissiveLanes light = emissive_sample<false>(scene, drawn, at.position, width, spread);
     const Float3 way = light.position - at.position;
     const Float away = hn::Sqrt(dot(way, way));

@@ -71,29 +71,54 @@ HWY_INLINE void store_paths(const PathLanes& path, Mask requested, Integer index
   });
 }
 
-/// Numbers in [0, 1) of one round: path_number() and path_pair() of
-/// shaders/lib/rays/reference_path.glsl.
+/// Numbers in [0, 1) of one round for each purpose: path_number() and path_pair() of
+/// shaders/lib/rays/reference_path.glsl, whose dimensions they have.
 class PathNumbers {
+  struct Position {
+    const shared::FrameConstants& frame;
+    std::uint32_t dimension;
+  };
+  struct Single {
+    RandomNumbers<UnsignedTag> of;
+    explicit Single(const Position& p)
+        : of(unsigned_tag, p.frame.sample_index, p.dimension, p.frame.seed) {}
+    HWY_INLINE Float at(const PixelLanes& p) const {
+      return of.at(as_unsigned(p.x), as_unsigned(p.y));
+    }
+  };
+  struct Pairs {
+    RandomPairs<UnsignedTag> of;
+    explicit Pairs(const Position& p)
+        : of(unsigned_tag, p.frame.sample_index, p.dimension, p.frame.seed) {}
+    HWY_INLINE Float2 at(const PixelLanes& p) const {
+      Float2 pair;
+      of.at(as_unsigned(p.x), as_unsigned(p.y), pair.x, pair.y);
+      return pair;
+    }
+  };
+
  public:
   PathNumbers(const shared::FrameConstants& frame, std::uint32_t round)
-      : frame_(frame), first_(256u + 16u * round) {}
+      : PathNumbers(Position{frame, 256u + 16u * round}) {}
 
-  HWY_INLINE Float one(std::uint32_t which, const PixelLanes& p) const {
-    const RandomNumbers<UnsignedTag> of(unsigned_tag, frame_.sample_index, first_ + which,
-                                        frame_.seed);
-    return of.at(as_unsigned(p.x), as_unsigned(p.y));
-  }
-  HWY_INLINE Float2 two(std::uint32_t which, const PixelLanes& p) const {
-    const RandomPairs<UnsignedTag> of(unsigned_tag, frame_.sample_index, first_ + which,
-                                      frame_.seed);
-    Float2 pair;
-    of.at(as_unsigned(p.x), as_unsigned(p.y), pair.x, pair.y);
-    return pair;
-  }
+  Single passing, light, lobe, survival;
+  Pairs light_point, direction, sky_cell, sky_point, triangle, triangle_point;
 
  private:
-  const shared::FrameConstants& frame_;
-  std::uint32_t first_;
+  static Position of(const Position& first, std::uint32_t which) {
+    return {first.frame, first.dimension + which};
+  }
+  explicit PathNumbers(const Position& first)
+      : passing(of(first, 0)),
+        light(of(first, 1)),
+        lobe(of(first, 3)),
+        survival(of(first, 5)),
+        light_point(of(first, 2)),
+        direction(of(first, 4)),
+        sky_cell(of(first, 6)),
+        sky_point(of(first, 7)),
+        triangle(of(first, 8)),
+        triangle_point(of(first, 9)) {}
 };
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

@@ -118,7 +118,7 @@ class PathVertices {
                                Mask blended, Float3& throughput) const {
     const Float3 behind = seen_behind(s, m);
     const Float probability = (behind.x + behind.y + behind.z) * number(1.0f / 3.0f);
-    const Mask passes = hn::And(blended, hn::Lt(numbers_.one(0, pixel), probability));
+    const Mask passes = hn::And(blended, hn::Lt(numbers_.passing.at(pixel), probability));
     const Float stopped = s.alpha / at_least(one() - probability, 1e-30f);
     const Float3 by_way = select(passes, behind * (one() / at_least(probability, 1e-30f)),
                                  {stopped, stopped, stopped});
@@ -165,8 +165,8 @@ class PathVertices {
   HWY_INLINE void scatter(RayLanes ray, const Material& m, Float width, const PixelLanes& pixel,
                           Mask lanes, PathLanes& path, RayBatch& next) const {
     const Float probability = specular_probability(m), rest = one() - probability;
-    const Float2 u = numbers_.two(4, pixel);
-    const Mask specular = hn::Lt(numbers_.one(3, pixel), probability);
+    const Float2 u = numbers_.direction.at(pixel);
+    const Mask specular = hn::Lt(numbers_.lobe.at(pixel), probability);
     const SpecularSample drawn = sample_specular(m, u);
     const Float3 wide = sample_cosine(m.normal, u.x, u.y);
     const Mask open = hn::Gt(dot(wide, m.geometric), zero());
@@ -175,8 +175,7 @@ class PathVertices {
     path.throughput = path.throughput * select(specular, specular_share, wide_share);
     const Float by_chance =
         hn::IfThenElseZero(is_scattering(drawn.roughness), probability * drawn.density);
-    const Float by_cosine =
-        rest * at_least(dot(wide, m.normal), 0.0f) * number(std::numbers::inv_pi_v<float>);
+    const Float by_cosine = rest * cosine_density(at_least(dot(wide, m.normal), 0.0f));
     path.density = select(specular, by_chance, by_cosine);
     path.flags = hn::IfThenElseZero(integer_mask(specular),
                                     integer(static_cast<int>(shared::path_specular)));
@@ -204,7 +203,7 @@ class PathVertices {
     const Mask dim = hn::Ge(path.bounces, number(first_roulette));
     if (none(dim)) return stays;
     const Float survival = hn::Min(largest, number(0.95f));
-    stays = hn::AndNot(hn::And(dim, hn::Ge(numbers_.one(5, pixel), survival)), stays);
+    stays = hn::AndNot(hn::And(dim, hn::Ge(numbers_.survival.at(pixel), survival)), stays);
     const Float by_survival = one() / at_least(survival, 1e-30f);
     path.throughput = path.throughput * select(dim, by_survival, one());
     return stays;

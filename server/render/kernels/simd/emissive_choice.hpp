@@ -8,9 +8,8 @@
 #define HELIOGRAPH_KERNELS_EMISSIVE_CHOICE_HPP
 #endif
 
-#include <numbers>
-
 #include "render/kernels/simd/lanes.hpp"
+#include "render/kernels/simd/rays.hpp"
 #include "shaders/shared/emissive.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -18,11 +17,6 @@ namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 inline constexpr auto emissive_candidates_per_receiver =
     static_cast<float>(shared::emissive_candidates);
-
-/// Density of a cosine-distributed ray under `cosine`, per steradian.
-HWY_INLINE Float cosine_density(Float cosine) {
-  return cosine * number(std::numbers::inv_pi_v<float>);
-}
 
 /// The fraction of a point's emission that receivers get of it.
 HWY_INLINE Float emissive_share(Float density, Float cosine_by_pi, Float cosine_there,

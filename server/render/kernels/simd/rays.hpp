@@ -47,6 +47,12 @@ HWY_INLINE Triple<V> sample_cosine(const Triple<V>& normal, V u, V v) {
   return normalized(tangent * disk.x + bitangent * disk.y + normal * up);
 }
 
+/// Its density under `cosine`, per steradian.
+template <class V>
+HWY_INLINE V cosine_density(V cosine) {
+  return cosine * hn::Set(hn::DFromV<V>(), std::numbers::inv_pi_v<float>);
+}
+
 template <class V>
 HWY_INLINE Triple<V> offset_origin(const Triple<V>& position, const Triple<V>& normal, V distance) {
   const hn::DFromV<V> d;

@@ -31,6 +31,16 @@ HWY_INLINE Float transmission_of(const LayeredSurfaceLanes& s) {
   return s.layer.transmission;
 }
 
+/// The factor on what is seen through a blended surface.
+HWY_INLINE Float3 seen_behind(const SurfaceLanes& s, const SurfaceMaterial<Float>&) {
+  const Float open = one() - s.alpha;
+  return {open, open, open};
+}
+HWY_INLINE Float3 seen_behind(const LayeredSurfaceLanes& s, const LayeredMaterial<Float>& m) {
+  const Float open = one() - s.alpha;
+  return multiply_add(m.transmitted, s.alpha, {open, open, open});
+}
+
 /// Whether the camera sees nothing there: shaders/lib/scene/coverage.glsl. Tracers test the nearest
 /// texel of a mask; the frame shows the filtered one.
 HWY_INLINE Mask is_open(const SurfaceLanes& s, const Float3& direction) {

@@ -41,7 +41,7 @@ HWY_INLINE Float3 sheen_light(const LayeredMaterial<Float>& m, const Float3& l) 
 
 /// BRDF x cosine of the lobes that are drawn by the cosine: diffuse, sheen.
 HWY_INLINE Float3 wide_light(const MaterialLanes& m, const Float3& l) {
-  return m.diffuse_albedo * (dot(m.normal, l) * number(std::numbers::inv_pi_v<float>));
+  return m.diffuse_albedo * cosine_density(dot(m.normal, l));
 }
 HWY_INLINE Float3 wide_light(const LayeredMaterial<Float>& m, const Float3& l) {
   const Float3 light = wide_light(static_cast<const MaterialLanes&>(m), l);
@@ -66,13 +66,10 @@ struct LobeValue {
 
 HWY_INLINE LobeValue lobe_value(const MaterialLanes& m, const Float3& lobe_normal, Float roughness,
                                 const Float3& l) {
-  const Float3 normal = reflecting_normal(m, lobe_normal);
-  Float3 tangent, bitangent;
-  orthonormal_basis(normal, tangent, bitangent);
+  const LobeFrame frame(m, lobe_normal);
+  const Float3& view = frame.view;
   const Float alpha = roughness * roughness;
-  const Float3 view = normalized(
-      Float3{dot(m.eye, tangent), dot(m.eye, bitangent), at_least(dot(m.eye, normal), 1e-3f)});
-  const Float3 light{dot(l, tangent), dot(l, bitangent), dot(l, normal)};
+  const Float3 light{dot(l, frame.tangent), dot(l, frame.bitangent), dot(l, frame.normal)};
   const Mask above = hn::Gt(light.z, zero());
   LobeValue value;
   value.density = hn::IfThenElseZero(above, visible_normal_pdf(view, light, alpha));
@@ -123,7 +120,7 @@ HWY_INLINE Float3 scattered_light(const Material& m, const Float3& l, Float dens
   Float3 sent = numbers(0.0f);
   if (diffuse) {
     const Float cosine = dot(l, m.normal);
-    const Float by_cosine = (one() - probability) * cosine * number(std::numbers::inv_pi_v<float>);
+    const Float by_cosine = (one() - probability) * cosine_density(cosine);
     const Float both = at_least(density + at_least(by_cosine, 0.0f), 1e-30f);
     sent = keep(hn::Gt(cosine, zero()), wide_light(m, l) * (one() / both));
   }

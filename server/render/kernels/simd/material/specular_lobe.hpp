@@ -102,20 +102,28 @@ struct LobeSample {
   Float v_dot_h, weight, density;
 };
 
+/// The frame of a lobe about its normal, and the direction to the eye in it.
+struct LobeFrame {
+  Float3 normal, tangent, bitangent, view;
+  HWY_INLINE LobeFrame(const MaterialLanes& m, const Float3& lobe_normal)
+      : normal(reflecting_normal(m, lobe_normal)) {
+    orthonormal_basis(normal, tangent, bitangent);
+    view = normalized(
+        Float3{dot(m.eye, tangent), dot(m.eye, bitangent), at_least(dot(m.eye, normal), 1e-3f)});
+  }
+};
+
 HWY_INLINE LobeSample sample_lobe(const MaterialLanes& m, const Float3& lobe_normal,
                                   Float roughness, const Float2& u) {
-  const Float3 normal = reflecting_normal(m, lobe_normal);
-  Float3 tangent, bitangent;
-  orthonormal_basis(normal, tangent, bitangent);
+  const LobeFrame frame(m, lobe_normal);
+  const Float3& view = frame.view;
   const Float alpha = roughness * roughness;
-  const Float3 view = normalized(
-      Float3{dot(m.eye, tangent), dot(m.eye, bitangent), at_least(dot(m.eye, normal), 1e-3f)});
   const Float3 microfacet = sample_visible_normal(view, alpha, u);
   LobeSample s;
   s.v_dot_h = dot(view, microfacet);
   const Float3 light = microfacet * (number(2.0f) * s.v_dot_h) - view;
-  s.direction = normalized(
-      multiply_add(tangent, light.x, multiply_add(bitangent, light.y, normal * light.z)));
+  s.direction = normalized(multiply_add(
+      frame.tangent, light.x, multiply_add(frame.bitangent, light.y, frame.normal * light.z)));
   const Mask open = hn::Gt(dot(s.direction, m.geometric), zero());
   s.weight = hn::IfThenElseZero(open, visible_normal_weight(view, light, alpha));
   s.density = visible_normal_pdf(view, light, at_least(alpha, 1e-4f));
