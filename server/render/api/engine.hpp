@@ -24,9 +24,9 @@ enum class JpegEncoding {
 };
 
 struct EngineOptions {
-  std::string device;                   // part of a device's name, or empty: the best there is
-  std::string tracer = "auto";          // auto, or a protocol::TracerKind
-  bool validation = false;              // Vulkan validation layers on, every message an error
+  std::string device;           // part of a name, for choose_devices() a list; empty: the best
+  std::string tracer = "auto";  // auto, or a protocol::TracerKind
+  bool validation = false;      // Vulkan validation layers on, every message an error
   std::filesystem::path cache_folder;   // pipeline cache; empty: none
   bool host_kernels = true;             // on devices that are processors, where a pass has one
   bool as_gpu = false;                  // treat a processor as a GPU, for tests of that path

@@ -17,8 +17,9 @@
 
 namespace heliograph::render {
 
-/// `automatic` becomes one of the others. On processors the mean of the hybrid is as similar to the
-/// truth as that of a hundred path traced samples, which take as long as the hybrid's.
+/// `automatic` becomes one of the others. On processors the hybrid's mean is as similar to the
+/// truth as that of a hundred path traced samples, each of which takes about as long as one of the
+/// hybrid.
 void choose_reference(protocol::Settings& settings, bool on_processor);
 
 struct Renderer::State {

@@ -97,11 +97,11 @@ class RenderLoop {
   const std::shared_ptr<WakeEvent> wake_ = std::make_shared<WakeEvent>();
   Measurements& measurements_;
   DeviceMigration migration_;
-  mutable std::mutex
-      mutex_;  // guards views_, closed_ and the callbacks; never held while rendering
+  /// Guards views_, closed_, what the device does and the callbacks; never held while rendering.
+  mutable std::mutex mutex_;
   Views views_;
-  Views closed_;    // removed by the render thread, which may be using them
-  BusyShare busy_;  // guarded by mutex_, as are the next ones
+  Views closed_;  // removed by the render thread, which may be using them
+  BusyShare busy_;
   DeviceTotals device_totals_;
   std::optional<std::uint64_t> free_memory_;  // of the device, of the latest second with frames
   Clock::time_point free_memory_at_{};
