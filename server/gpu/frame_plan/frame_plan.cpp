@@ -145,15 +145,19 @@ PassBuilder FramePlan::raster(std::string name, const RasterProgram& program) {
 }
 
 void FramePlan::only_when(const std::function<bool()>& condition,
-                          const std::function<void()>& declare) {
+                          const std::function<void()>& declare,
+                          const std::function<void()>& otherwise) {
   const std::size_t first = passes_.size();
   declare();
+  const std::size_t second = passes_.size();
+  if (otherwise) otherwise();
+  const std::uint32_t number = new_condition();
   for (std::size_t i = first; i < passes_.size(); ++i) {
+    const bool met = i < second;
     std::function<bool()>& own = passes_[i].condition;
-    own = [condition, own] { return condition() && (!own || own()); };
-    passes_[i].conditions.push_back(conditions_);
+    own = [condition, met, own] { return condition() == met && (!own || own()); };
+    passes_[i].conditions.push_back(met ? number : opposite_condition(number));
   }
-  ++conditions_;
 }
 
 PassBuilder FramePlan::host(std::string name, std::function<void()> run) {

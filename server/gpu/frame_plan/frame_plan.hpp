@@ -231,8 +231,10 @@ class FramePlan {
   PassBuilder host(std::string name, std::function<void()> run);
 
   /// Passes that `declare` adds are skipped in frames where `condition` is false, besides what
-  /// their own when() says.
-  void only_when(const std::function<bool()>& condition, const std::function<void()>& declare);
+  /// their own when() says; those that `otherwise` adds where it is true. What both write is
+  /// written in every frame.
+  void only_when(const std::function<bool()>& condition, const std::function<void()>& declare,
+                 const std::function<void()>& otherwise = {});
 
   /// Of images and passes that `declare` adds, sizes that follow the frame are those of a frame
   /// with one texel for each square of `side` by `side` pixels.
@@ -321,8 +323,12 @@ class FramePlan {
     Access first_access;
   };
   std::optional<Uses> first_and_last_use(std::uint32_t index) const;
-  /// Whether frames may leave out the pass that uses the resource first; whether they may do so
-  /// and run another pass that uses it.
+  std::uint32_t new_condition() { return 2 * conditions_++; }
+  static std::uint32_t opposite_condition(std::uint32_t condition) { return condition ^ 1; }
+  /// Those without which no pass of a frame writes the resource.
+  std::vector<std::uint32_t> conditions_of_writing(std::uint32_t index) const;
+  /// Whether frames may leave out the passes that write the resource; whether they may do so and
+  /// run another pass that uses it.
   bool leaves_out(std::uint32_t index) const;
   bool reads_left_out(std::uint32_t index) const;
   PassBuilder add(Pass pass);

@@ -95,9 +95,27 @@ std::optional<FramePlan::Uses> FramePlan::first_and_last_use(std::uint32_t index
   return found;
 }
 
-bool FramePlan::leaves_out(std::uint32_t index) const {
+std::vector<std::uint32_t> FramePlan::conditions_of_writing(std::uint32_t index) const {
   const auto uses = first_and_last_use(index);
-  return uses && passes_[uses->first].condition;
+  if (!uses) return {};
+  const auto& first = passes_[uses->first].conditions;
+  std::vector<std::uint32_t> needed;
+  for (const std::uint32_t condition : first) {
+    auto otherwise = first;
+    std::ranges::replace(otherwise, condition, opposite_condition(condition));
+    const bool always = std::ranges::any_of(passes_, [&](const Pass& pass) {
+      return pass.conditions == otherwise &&
+             std::ranges::any_of(pass.all_uses(), [&](const Use& use) {
+               return use.resource == index && use.access == Access::write;
+             });
+    });
+    if (!always) needed.push_back(condition);
+  }
+  return needed;
+}
+
+bool FramePlan::leaves_out(std::uint32_t index) const {
+  return !conditions_of_writing(index).empty();
 }
 
 bool FramePlan::reads_left_out(std::uint32_t index) const {
@@ -108,7 +126,7 @@ bool FramePlan::reads_left_out(std::uint32_t index) const {
   const auto is_it = [&](const Use& use) {
     return use.resource == index || (history && use.resource == index + 1);
   };
-  const auto& written = passes_[uses->first].conditions;
+  const auto written = conditions_of_writing(index);
   return std::ranges::any_of(passes_, [&](const Pass& pass) {
     const auto all = pass.all_uses();
     return std::ranges::any_of(all, is_it) &&

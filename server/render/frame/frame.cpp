@@ -80,6 +80,17 @@ DenoisedSignals denoise(gpu::FramePlan& plan, const FrameInputs& in, const GBuff
   return denoised;
 }
 
+/// A path traced sample in frames of static views whose hybrid samples are complete; it has no
+/// content in others.
+gpu::ImageRef trace_reference_when_due(gpu::FramePlan& plan, const FrameInputs& in,
+                                       gpu::BufferRef ground) {
+  gpu::ImageRef traced;
+  plan.only_when([in] { return traces_reference(in); },
+                 [&] { traced = trace_reference(plan, in, ground); });
+  plan.leave_undefined_when_skipped(traced);
+  return traced;
+}
+
 /// Blends the frame with the mean of its samples.
 FrameOutputs show(gpu::FramePlan& plan, const FrameInputs& in, const gpu::History& accumulated,
                   const Exposure& exposure, gpu::ImageRef radiance) {
@@ -104,6 +115,10 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   const protocol::ReferenceUse reference = in.settings.reference.use;
   const gpu::BufferRef ground = trace_ground(plan, in);
   if (reference == protocol::ReferenceUse::always) return declare_reference(plan, in, ground);
+  // First, so that what its passes need is free for the hybrid's.
+  const bool takes_over = reference == protocol::ReferenceUse::when_static;
+  std::optional<gpu::ImageRef> traced;
+  if (takes_over) traced = trace_reference_when_due(plan, in, ground);
   // The host's rasteriser finds blended surfaces together with those behind them.
   std::optional<BlendedImages> drawn;
   if (has_blends(in) && draws_gbuffer_on_host(plan, in)) drawn = declare_blended(plan);
@@ -134,20 +149,13 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   if (from) denoised = denoise(plan, in, gbuffer, *from, noisy);
 
   // What is left takes little time, unless it traces rays.
-  const bool takes_over = reference == protocol::ReferenceUse::when_static;
-  const bool traces = takes_over || (in.scene.features & shared::scene_blends) != 0;
-  if (!traces) plan.finish_frames_from_here();
+  if ((in.scene.features & shared::scene_blends) == 0) plan.finish_frames_from_here();
   const gpu::ImageRef background = draw_skybox(plan, in, gbuffer);
   shade_ground(plan, in, gbuffer, ground, background);
   const Composed composed = compose(plan, in, gbuffer, noisy, denoised, background);
   GBuffer visible = gbuffer;
   visible.motion = blend_surfaces(plan, in, gbuffer, composed, cache, blended);
 
-  std::optional<gpu::ImageRef> traced;
-  if (takes_over) {
-    plan.only_when([in] { return traces_reference(in); },
-                   [&] { traced = trace_reference(plan, in, ground); });
-  }
   const gpu::History accumulated = accumulate(plan, in, composed.noisy, traced);
   const Exposure exposure = expose(plan, in, composed.hdr, accumulated.current);
   const gpu::ImageRef resolved = temporal_antialias(plan, in, visible, exposure, composed.hdr);

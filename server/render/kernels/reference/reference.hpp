@@ -3,6 +3,7 @@
 #include <span>
 
 #include "render/kernels/blend/blended.hpp"
+#include "render/kernels/common/tile.hpp"
 #include "render/resources/environment/environment_table.hpp"
 #include "shaders/shared/reference.h"
 
@@ -15,10 +16,11 @@ template <class Stage>
 struct ReferenceBounceBindings {
   RaySource<Stage> rays;
   gpu::ReadBuffer<Stage, shared::Hit> hits;
-  gpu::ReadWriteBuffer<Stage, shared::ReferencePath> paths;  // by pixel; not read in round 0
-  RaySink<Stage> next;                                       // where paths go on; begun before
+  gpu::ReadWriteBuffer<Stage, shared::ReferencePath>
+      paths;                              // by pixel of `rows`; not read in round 0
+  RaySink<Stage> next;                    // where paths go on; begun before
   RaySink<Stage> shadows, sky, emissive;  // they carry what arrives unless they are occluded
-  gpu::ReadWrite<Stage> radiance;         // rgba32f; begun in round 0
+  gpu::ReadWrite<Stage> radiance;         // rgba32f
   gpu::ReadBuffer<Stage, float> ground_shade;
 };
 struct ReferenceBounceJob : FrameJob<ReferenceBounceBindings, shared::ReferenceConstants> {
@@ -27,7 +29,15 @@ struct ReferenceBounceJob : FrameJob<ReferenceBounceBindings, shared::ReferenceC
   RadianceMap background;                  // what the camera sees behind the scene
   bool samples_emissive;                   // triangles of the scene shine
   std::uint32_t blending;                  // RayCount::blending of shadows, sky and emissive
+  Rows rows;                               // that the rays are of
 };
+
+/// Clears the radiance that the vertices of paths add to, rgba32f.
+template <class Stage>
+struct ReferenceBeginBindings {
+  gpu::Write<Stage> radiance;
+};
+void reference_begin(const gpu::HostPass<ReferenceBeginBindings>& job);
 
 /// One vertex of every path. A pixel has at most one ray in each stream.
 void reference_bounce(const ReferenceBounceJob& job);

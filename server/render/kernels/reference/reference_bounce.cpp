@@ -38,9 +38,8 @@ class PathVertices {
     const PixelLanes pixel = unpack_pixel(ray.pixel);
     HitLanes hit = load_hits(job_.hits, first, last);
     hit.met = hn::And(hit.met, requested);
-    PathLanes path = job_.constants.round == 0
-                         ? first_paths(job_.frame)
-                         : load_paths(job_.paths, pixel_index(job_.frame, pixel));
+    PathLanes path = job_.constants.round == 0 ? first_paths(job_.frame)
+                                               : load_paths(job_.paths, path_index(pixel));
     const Mask missed = hn::AndNot(hit.met, requested);
     Float3 radiance = numbers(0.0f);
     if (!none(missed)) radiance = keep(missed, path.throughput * at_miss(path, ray, missed));
@@ -51,6 +50,11 @@ class PathVertices {
   }
 
  private:
+  Integer path_index(const PixelLanes& pixel) const {
+    const auto first = static_cast<int>(job_.frame.extent.x) * job_.rows.top;
+    return hn::Sub(pixel_index(job_.frame, pixel), integer(first));
+  }
+
   bool enabled(std::uint32_t flag) const { return (job_.frame.flags & flag) != 0; }
 
   HWY_INLINE Float3 at_miss(const PathLanes& path, const RayLanes& ray, Mask missed) const {
@@ -190,7 +194,7 @@ class PathVertices {
 
   HWY_INLINE void go_on(const RayLanes& ray, const PathLanes& path, const PixelLanes& pixel,
                         Mask lanes, RayBatch& next) const {
-    store_paths(path, lanes, pixel_index(job_.frame, pixel), job_.paths);
+    store_paths(path, lanes, path_index(pixel), job_.paths);
     next.add(ray, lanes);
   }
 
@@ -210,11 +214,9 @@ class PathVertices {
   }
 
   HWY_INLINE void add(const Float3& radiance, const PixelLanes& pixel, Mask requested) const {
-    Float3 sum = select(is_bad(radiance), numbers(0.0f), radiance);
-    if (job_.constants.round != 0) {
-      const Float4 before = gathered4(job_.radiance, pixel);
-      sum = sum + Float3{before.x, before.y, before.z};
-    }
+    const Float4 before = gathered4(job_.radiance, pixel);
+    const Float3 sum =
+        Float3{before.x, before.y, before.z} + select(is_bad(radiance), numbers(0.0f), radiance);
     const Texels<4> texels(Float4{sum.x, sum.y, sum.z, one()});
     const TexelIndices at(pixel);
     for_each_lane(requested, [&](std::size_t lane) { texels.put(job_.radiance, lane, at); });
@@ -253,6 +255,15 @@ HWY_AFTER_NAMESPACE();
 namespace heliograph::render::kernels {
 
 HWY_EXPORT(bounce_batch);
+
+void reference_begin(const gpu::HostPass<ReferenceBeginBindings>& job) {
+  for_each_range(job.height, 16, [&](int first, int last) {
+    for (int y = first; y < last; ++y) {
+      std::fill_n(job.radiance.row<glm::vec4>(static_cast<std::uint32_t>(y)), job.width,
+                  glm::vec4(0.0f));
+    }
+  });
+}
 
 void reference_bounce(const ReferenceBounceJob& job) {
   for (const auto* const lights : {&job.shadows, &job.sky, &job.emissive}) {

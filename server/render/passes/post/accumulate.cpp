@@ -31,8 +31,8 @@ gpu::History accumulate(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageR
     add(sample);
     return history;
   }
-  add(sample).when([in] { return !traces_reference(in); });
-  add(*traced).when([in] { return traces_reference(in); });
+  plan.only_when([in] { return traces_reference(in); }, [&] { add(*traced); },
+                 [&] { add(sample); });
   return history;
 }
 

@@ -115,9 +115,7 @@ class Wavefront {
 
  private:
   gpu::PassBuilder pass(const std::string& name, const gpu::ShaderBinary& shader) {
-    return plan_.pass(name, in_.program(shader, in_.moving.features())).when([in = in_] {
-      return traces_reference(in);
-    });
+    return plan_.pass(name, in_.program(shader, in_.moving.features()));
   }
 
   gpu::BufferRef buffer(const std::string& name, std::size_t element) {
@@ -163,12 +161,7 @@ bool traces_reference(const FrameInputs& in) {
 gpu::ImageRef trace_reference(gpu::FramePlan& plan, const FrameInputs& in, gpu::BufferRef ground) {
   const protocol::Settings::Reference& settings = in.settings.reference;
   const bool full = settings.scope == protocol::ReferenceScope::full;
-  if (full && plan.uses_host_kernels()) {
-    gpu::ImageRef traced;
-    plan.only_when([in] { return traces_reference(in); },
-                   [&] { traced = trace_paths(plan, in, ground); });
-    return traced;
-  }
+  if (full && plan.uses_host_kernels()) return trace_paths(plan, in, ground);
   Wavefront wavefront(plan, in, ground);
   wavefront.begin();
   if (full) {

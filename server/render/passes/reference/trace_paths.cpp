@@ -86,12 +86,12 @@ class PathRounds {
                                                  .radiance = radiance_,
                                                  .ground_shade = ground_})
         .constants(shared::ReferenceConstants{round, bounces, 1, 1.0f})
-        .host([in = in_, shines = shines_,
-               seen = background_](const kernels::ReferenceBounceJob::Pass& pass) {
+        .host([in = in_, shines = shines_, seen = background_,
+               rows = rows_](const kernels::ReferenceBounceJob::Pass& pass) {
           const auto lights = frame_lights(in.tables.lights, in.constants);
           kernels::reference_bounce({pass, in.constants, lit_scene(in, lights),
-                                     environment_cells(in), seen.map(), shines,
-                                     frame_blending(in)});
+                                     environment_cells(in), seen.map(), shines, frame_blending(in),
+                                     rows});
         });
   }
 
@@ -127,10 +127,17 @@ gpu::ImageRef trace_paths(gpu::FramePlan& plan, const FrameInputs& in, gpu::Buff
   constexpr std::uint32_t larger_strips = 2;
   const VkExtent2D extent = plan.extent();
   const auto radiance = plan.image(reference_buffers.radiance.name, formats::four_floats);
+  plan.host("reference.begin", {})
+      .bind<kernels::ReferenceBeginBindings>({.radiance = radiance})
+      .dispatch(gpu::each_pixel())
+      .host(kernels::reference_begin);
+  const auto strips = ray_strips(plan, extent, larger_strips);
+  // The first is as high as any.
   const auto paths =
-      plan.buffer("reference.paths", sizeof(shared::ReferencePath) * extent.width * extent.height,
+      plan.buffer("reference.paths",
+                  sizeof(shared::ReferencePath) * camera_ray_capacity(extent.width, strips.front()),
                   storage, gpu::Memory::device);
-  for (const kernels::Rows rows : ray_strips(plan, extent, larger_strips)) {
+  for (const kernels::Rows rows : strips) {
     PathRounds(plan, in, ground, radiance, paths, rows).declare();
   }
   return radiance;
