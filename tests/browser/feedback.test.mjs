@@ -16,7 +16,12 @@ stage.test("a static view says how far it is refined, and nothing once it has co
   const counted = async () => Number.parseInt(await indicator.textContent(), 10);
   const before = await counted();
   await eventually(async () => (await counted()) > before, "more samples");
-  await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 2 } } });
+  await stage.server.call("settings.patch", {
+    patch: { accumulation: { max_samples: 2 }, reference: { samples: 4096 } },
+  });
+  await indicator.getByText(/^\d+ of 4096 path traced samples$/).waitFor();
+  await screenshot(page, "refining_path_traced");
+  await stage.server.call("settings.patch", { patch: { reference: { samples: 1 } } });
   await indicator.waitFor({ state: "hidden" });
 });
 

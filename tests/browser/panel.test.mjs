@@ -76,7 +76,7 @@ stage.test("every control patches its setting, is marked as changed, and resets"
     const kind = (await row.getAttribute("class")).match(/row-(\w+)/)[1];
     if (!operate[kind]) continue;
     await reveal(row);
-    const initial = path === "accumulation.max_samples" ? stage.samples : node.default;
+    const initial = stage.settings[path] ?? node.default;
     assert.deepEqual(await stage.server.setting(path), initial, `${path} before`);
     await operate[kind](row);
     await eventually(
@@ -91,9 +91,8 @@ stage.test("every control patches its setting, is marked as changed, and resets"
     );
     if (initial !== node.default) {
       // Without convergence, rendering takes the CPU time that the page needs.
-      await stage.server.call("settings.patch", {
-        patch: { accumulation: { max_samples: initial } },
-      });
+      const [group, member] = path.split(".");
+      await stage.server.call("settings.patch", { patch: { [group]: { [member]: initial } } });
     }
     operated.add(kind);
   }

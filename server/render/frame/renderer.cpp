@@ -129,7 +129,7 @@ protocol::Result<void> Renderer::set_settings(const protocol::Settings& settings
     return known;
   }
   protocol::Settings chosen = settings;
-  choose_reference(chosen, state_->parts.device.is_cpu());
+  choose_reference(chosen);
   if (chosen != state_->settings) state_->change_settings(chosen);
   return {};
 }

@@ -9,10 +9,10 @@
 
 namespace heliograph::render {
 
-void choose_reference(protocol::Settings& settings, bool on_processor) {
+void choose_reference(protocol::Settings& settings) {
   protocol::Settings::Reference& reference = settings.reference;
   if (reference.use != protocol::ReferenceUse::automatic) return;
-  const bool traces = !on_processor && settings.indirect.enabled;
+  const bool traces = settings.indirect.enabled;
   reference.use = traces ? protocol::ReferenceUse::when_static : protocol::ReferenceUse::off;
   if (traces) reference.scope = protocol::ReferenceScope::full;
 }

@@ -17,15 +17,13 @@
 
 namespace heliograph::render {
 
-/// `automatic` becomes one of the others. On processors the hybrid's mean is as similar to the
-/// truth as that of a hundred path traced samples, each of which takes about as long as one of the
-/// hybrid.
-void choose_reference(protocol::Settings& settings, bool on_processor);
+/// `automatic` becomes one of the others.
+void choose_reference(protocol::Settings& settings);
 
 struct Renderer::State {
   State(Engine::Parts& engine, std::shared_ptr<const SceneResources> empty)
       : parts(engine), nothing(std::move(empty)), constants_buffers(engine.device) {
-    choose_reference(settings, parts.device.is_cpu());
+    choose_reference(settings);
   }
 
   void discard_frame_plan();

@@ -42,6 +42,11 @@ Result<Capture> encoded(const CaptureContent& content, protocol::ImageFormat for
 
 }  // namespace
 
+bool lacks_reference_alone(const protocol::Settings& settings, const render::Frame& frame) {
+  return settings.reference.use == protocol::ReferenceUse::automatic &&
+         frame.samples >= static_cast<std::uint32_t>(settings.accumulation.max_samples);
+}
+
 FrameReaders::FrameReaders(Session& session, Worker& capture_writer, Measurements& measurements,
                            WakeEvent& written)
     : session_(session),
@@ -140,11 +145,7 @@ bool FrameReaders::is_ready(const PendingCapture& capture, const ReadableFrame& 
   if (newest.width != state.width || newest.height != state.height) return false;
   if (state.animation.playing || !frame.renderer.needs_frame()) return true;
   const std::optional<std::uint32_t>& samples = capture.request.samples;
-  // A reference that was not asked for may follow.
-  if (state.settings.reference.use == protocol::ReferenceUse::automatic &&
-      newest.samples >= static_cast<std::uint32_t>(state.settings.accumulation.max_samples)) {
-    return true;
-  }
+  if (lacks_reference_alone(state.settings, newest)) return true;
   return samples ? newest.samples >= *samples : is_complete_at_once(capture.request.buffer);
 }
 

@@ -22,6 +22,10 @@ struct ReadableFrame {
   Clock::time_point began;      // when its rendering began
 };
 
+/// Whether a static view has all samples but those of a path traced reference that was not asked
+/// for (`reference.use=automatic`).
+bool lacks_reference_alone(const protocol::Settings& settings, const render::Frame& frame);
+
 /// Captures and probes that wait for a frame of one session. For the render thread.
 class FrameReaders {
  public:

@@ -22,6 +22,7 @@ constexpr std::size_t most_preparing_threads = 4;
 constexpr std::size_t max_queued_captures = 4;
 constexpr std::size_t max_queued_preparations = 64;
 constexpr std::chrono::milliseconds pause_without_memory{100};
+constexpr std::chrono::milliseconds reference_pause{100};
 constexpr std::chrono::seconds free_memory_interval{1};
 
 /// Those of one of so many loops.
@@ -183,7 +184,8 @@ void RenderLoop::remove_closed() {
 }
 
 /// Does the short work of all sessions first, so that it does not wait for the frame of another
-/// session; then the first session in order of turns that has a frame due renders it.
+/// session; then the first session in order of turns that has a frame due renders it. While images
+/// move, references that were not asked for wait.
 bool RenderLoop::advance_next(const Views& views) {
   std::vector<FairShare::Key> ready;
   for (const auto& view : views) {
@@ -200,7 +202,12 @@ bool RenderLoop::advance_next(const Views& views) {
     view->share_device(static_cast<std::size_t>(moving));
     const SessionView::Work work = advance(*view, false);
     if (work == SessionView::Work::small) return true;
-    if (work == SessionView::Work::held_back) drawing.push_back(view);
+    if (work != SessionView::Work::held_back) continue;
+    if (moving > 0 && view->refines_reference()) {
+      held_back_until_ = Clock::now() + reference_pause;
+    } else {
+      drawing.push_back(view);
+    }
   }
   return std::ranges::any_of(drawing, [&](const auto& view) { return draw_in_turn(view); });
 }

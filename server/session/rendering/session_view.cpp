@@ -212,6 +212,11 @@ bool SessionView::moves() const {
   return Clock::now() < moving_frame_at_ + sharing_window;
 }
 
+bool SessionView::refines_reference() const {
+  return newest_ && newest_version_ == session_->version() && readers_.empty() &&
+         !state_.lockstep && lacks_reference_alone(state_.settings, newest_->frame);
+}
+
 /// A GPU has to copy it, which takes as long as a fast frame; and frames that come this often need
 /// nothing between them.
 bool SessionView::depth_pays() const {

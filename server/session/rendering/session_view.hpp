@@ -59,6 +59,8 @@ class SessionView {
   Work advance(bool may_draw);
   /// Whether the device still works on a frame.
   bool in_flight() const { return begun_.has_value(); }
+  /// Whether its next frame adds to a reference that was not asked for.
+  bool refines_reference() const;
   /// Waits for it and shows it. `device_free`: when the device was done with the frame of another
   /// view, before which it did not work on this one.
   void finish_frame(Clock::time_point device_free = {});

@@ -26,7 +26,11 @@ export class Stage {
     prepare = async () => {},
   } = {}) {
     this.serverArguments = [...serverArguments, ...(scene ? ["--scene", scene] : [])];
-    if (samples) this.serverArguments.push("--set", `accumulation.max_samples=${samples}`);
+    /** Values of settings that are not the server's defaults. */
+    this.settings = samples ? { "accumulation.max_samples": samples, "reference.samples": 4 } : {};
+    for (const [path, value] of Object.entries(this.settings)) {
+      this.serverArguments.push("--set", `${path}=${value}`);
+    }
     this.samples = samples;
     this.resolution = resolution;
     this.view = view;

@@ -129,6 +129,11 @@ TEST_F(FrameMemory, SharingChangesNoImageOfAnyFrame) {
        [](protocol::Settings& s) { s.reference.use = protocol::ReferenceUse::always; }},
       {"reference of static views",
        [](protocol::Settings& s) { s.reference.use = protocol::ReferenceUse::when_static; }},
+      {"global illumination of static views",
+       [](protocol::Settings& s) {
+         s.reference.use = protocol::ReferenceUse::when_static;
+         s.reference.scope = protocol::ReferenceScope::full;
+       }},
       {"automatic exposure",
        [](protocol::Settings& s) { s.exposure.mode = protocol::ExposureMode::automatic; }},
   };

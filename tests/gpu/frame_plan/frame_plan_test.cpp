@@ -322,6 +322,25 @@ TEST_F(FramePlanTest, OnlyWhenSkipsAllPassesDeclaredWithin) {
   EXPECT_EQ(value(c), 3.0f);
 }
 
+TEST_F(FramePlanTest, WhatOneOfTwoPassesWritesIsLeftOutInNoFrame) {
+  const auto a = image("a"), either = image("either"), one = image("one");
+  bool first = false;
+  plan_.only_when([&] { return first; },
+                  [&] {
+                    add("first", a, either, 2.0f);
+                    add("only first", a, one, 5.0f);
+                  },
+                  [&] { add("second", a, either, 3.0f); });
+  plan_.share_memory();
+  plan_.compile();
+  plan_.execute();
+  EXPECT_EQ(value(either), 3.0f);
+  first = true;
+  plan_.execute();
+  EXPECT_EQ(value(either), 2.0f);
+  EXPECT_EQ(value(one), 5.0f);
+}
+
 TEST_F(FramePlanTest, HostPassesAloneSubmitNothing) {
   int runs = 0;
   plan_.host("first", [&] { ++runs; });

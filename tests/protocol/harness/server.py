@@ -35,6 +35,7 @@ class Server:
         port = self._free_port() if early else 0
         command = [binary or os.environ["HELIOGRAPH_BINARY"], "serve", "--port", str(port),
                    "--width", "160", "--height", "90", "--set", "accumulation.max_samples=4",
+                   "--set", "reference.samples=2",
                    "--scene-root", scenes or os.environ["HELIOGRAPH_SCENES"], *arguments]
         surroundings = {**os.environ, **(environment or {})}
         if os.environ.get("HELIOGRAPH_TEST_PRELOAD"):
