@@ -330,6 +330,7 @@ class FramePlan {
   /// Whether frames may leave out the passes that write the resource; whether they may do so and
   /// run another pass that uses it.
   bool leaves_out(std::uint32_t index) const;
+  bool is_undefined_when_skipped(std::uint32_t index) const;
   bool reads_left_out(std::uint32_t index) const;
   PassBuilder add(Pass pass);
   bool run_passes();

@@ -80,6 +80,7 @@ std::optional<Lifetime> FramePlan::shared_lifetime(std::uint32_t index) const {
   const VkMemoryRequirements needed = requirements_of(device_, resource);
   lifetime.bytes = needed.size;
   lifetime.alignment = needed.alignment;
+  lifetime.seldom = is_undefined_when_skipped(index);
   return lifetime;
 }
 
@@ -114,14 +115,17 @@ std::vector<std::uint32_t> FramePlan::conditions_of_writing(std::uint32_t index)
   return needed;
 }
 
+bool FramePlan::is_undefined_when_skipped(std::uint32_t index) const {
+  return std::ranges::find(undefined_when_skipped_, index) != undefined_when_skipped_.end();
+}
+
 bool FramePlan::leaves_out(std::uint32_t index) const {
   return !conditions_of_writing(index).empty();
 }
 
 bool FramePlan::reads_left_out(std::uint32_t index) const {
   const auto uses = first_and_last_use(index);
-  if (!uses || std::ranges::find(undefined_when_skipped_, index) != undefined_when_skipped_.end())
-    return false;
+  if (!uses || is_undefined_when_skipped(index)) return false;
   const bool history = resources_[index].part == Resource::Part::current;
   const auto is_it = [&](const Use& use) {
     return use.resource == index || (history && use.resource == index + 1);

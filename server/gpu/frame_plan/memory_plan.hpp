@@ -14,6 +14,7 @@ struct Lifetime {
   std::uint64_t alignment = 1;  // a power of two
   std::uint32_t first = 0;
   std::uint32_t last = 0;
+  bool seldom = false;  // few frames use it
 };
 
 struct MemoryPlan {
@@ -31,9 +32,11 @@ struct FixedPlace {
   MemoryPlan::Place place;
 };
 
-/// Places resources in as little memory as first fit finds, the largest first, such that those
-/// alive in the same pass never overlap. No block is larger than `most_block_bytes`, unless one
-/// resource is: that has a block of its own. `fixed`: what lies in the first blocks already.
+/// Places resources in as little memory as first fit finds, the largest first and those of few
+/// frames last, such that those alive in the same pass never overlap. The pages that resources of
+/// few frames have for themselves stay unused until then. No block is larger than
+/// `most_block_bytes`, unless one resource is: that has a block of its own. `fixed`: what lies in
+/// the first blocks already.
 MemoryPlan plan_memory(std::span<const Lifetime> lifetimes, std::uint64_t most_block_bytes,
                        std::span<const FixedPlace> fixed = {});
 

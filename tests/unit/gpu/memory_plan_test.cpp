@@ -86,6 +86,16 @@ TEST(MemoryPlan, UsesWhatIsFreeBesideFixedPlacesWithoutGrowingTheirBlocks) {
   EXPECT_EQ(plan.places[2].block, 1u);
 }
 
+TEST(MemoryPlan, PlacesWhatFewFramesUseBehindEverythingElse) {
+  const std::vector<Lifetime> frame{{.bytes = 100, .first = 0, .last = 9, .seldom = true},
+                                    {.bytes = 60, .first = 0, .last = 4},
+                                    {.bytes = 40, .first = 2, .last = 5}};
+  const MemoryPlan plan = plan_memory(frame, no_limit);
+  EXPECT_EQ(plan.places[1].offset, 0u);
+  EXPECT_EQ(plan.places[2].offset, 60u);
+  EXPECT_EQ(plan.places[0].offset, 100u);
+}
+
 TEST(MemoryPlan, OfNothingHasNoBlocks) {
   EXPECT_TRUE(plan_memory({}, no_limit).block_bytes.empty());
 }
