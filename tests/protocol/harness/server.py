@@ -19,6 +19,8 @@ import unittest
 TIME_FACTOR = float(os.environ.get("HELIOGRAPH_TEST_TIME_FACTOR", "1"))
 START_TIMEOUT = 120 * TIME_FACTOR
 UNKNOWN_METHOD = -32601
+# Of the hybrid and of the path tracer: static views converge soon.
+FEW_SAMPLES = {"accumulation": {"max_samples": 4}, "reference": {"samples": 2}}
 
 
 class Server:
@@ -34,8 +36,7 @@ class Server:
         self.log = tempfile.TemporaryFile(mode="w+")
         port = self._free_port() if early else 0
         command = [binary or os.environ["HELIOGRAPH_BINARY"], "serve", "--port", str(port),
-                   "--width", "160", "--height", "90", "--set", "accumulation.max_samples=4",
-                   "--set", "reference.samples=2",
+                   "--width", "160", "--height", "90", *self._few_samples(),
                    "--scene-root", scenes or os.environ["HELIOGRAPH_SCENES"], *arguments]
         surroundings = {**os.environ, **(environment or {})}
         if os.environ.get("HELIOGRAPH_TEST_PRELOAD"):
@@ -49,6 +50,12 @@ class Server:
             raise
         self.host, self.port = re.fullmatch(r"https?://(.+):(\d+)/", self.url).groups()
         self.port = int(self.port)
+
+    @staticmethod
+    def _few_samples():
+        return [argument for group, members in FEW_SAMPLES.items()
+                for name, value in members.items()
+                for argument in ("--set", f"{group}.{name}={value}")]
 
     def _wait_for_address(self):
         lines = queue.Queue()
@@ -218,7 +225,7 @@ class ServerTestCase(unittest.IsolatedAsyncioTestCase):
             self.server.call("scene.load", {"name": "mirror"})
         defaults = {group: None for group in self.server.call("settings.get")["settings"]}
         self.server.call("settings.patch", {"patch": defaults})
-        self.server.call("settings.patch", {"patch": {"accumulation": {"max_samples": 4}}})
+        self.server.call("settings.patch", {"patch": FEW_SAMPLES})
         self.server.call("stream.configure", {"width": 160, "height": 90})
         self.server.call("camera.fit")
 
