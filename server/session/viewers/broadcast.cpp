@@ -14,6 +14,9 @@ using std::chrono::microseconds;
 
 namespace {
 
+/// Of frames of a static image whose samples take long to double.
+constexpr microseconds longest_refining_interval = std::chrono::seconds(4);
+
 protocol::StreamPhase phase_of(FramePurpose purpose) {
   switch (purpose) {
     case FramePurpose::interactive:
@@ -164,7 +167,9 @@ void Broadcast::rendered(std::shared_ptr<const RenderedFrame> frame, FramePurpos
   const bool other_state = samples < due_samples_ || newest_->header.state_rev != due_rev_;
   if (purpose == FramePurpose::interactive) {
     send_newest(FramePurpose::interactive);
-  } else if (other_state || samples >= 2 * due_samples_) {
+  } else if (other_state || samples >= 2 * due_samples_ ||
+             microseconds(newest_->header.render_start_us - due_start_us_) >=
+                 longest_refining_interval) {
     send_newest(FramePurpose::refining);
   } else {
     session_->viewers().publish_stats(
@@ -189,6 +194,7 @@ void Broadcast::send_newest(FramePurpose purpose) {
   due_purpose_ = purpose;
   due_samples_ = newest_->header.sample_count;
   due_rev_ = newest_->header.state_rev;
+  due_start_us_ = newest_->header.render_start_us;
   newer_than_due_ = false;
   ++number_;
 }

@@ -29,7 +29,8 @@ struct BroadcastServices {
 /// Sends the frames of one session to its viewers. Takes every rendered frame, picks those to send,
 /// and has them encoded beside rendering, only for viewers that can accept a frame now and in the
 /// variants that they request. While a static image refines it is sent when its samples have
-/// doubled or it shows another state; the final frame is sent once. For the render thread.
+/// doubled, after a few seconds, or when it shows another state; the final frame is sent once. For
+/// the render thread.
 class Broadcast {
  public:
   Broadcast(std::shared_ptr<Session> session, const BroadcastServices& services);
@@ -69,6 +70,7 @@ class Broadcast {
   std::uint64_t started_ = 0;    // the last that was given to the encoder
   std::uint32_t due_samples_ = 0;
   std::uint32_t due_rev_ = 0;  // the state that it shows
+  std::uint64_t due_start_us_ = 0;
 };
 
 }  // namespace heliograph::session

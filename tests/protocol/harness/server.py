@@ -21,6 +21,7 @@ START_TIMEOUT = 120 * TIME_FACTOR
 UNKNOWN_METHOD = -32601
 # Of the hybrid and of the path tracer: static views converge soon.
 FEW_SAMPLES = {"accumulation": {"max_samples": 4}, "reference": {"samples": 2}}
+CONVERGED_SAMPLES = 4 + 2
 
 
 class Server:

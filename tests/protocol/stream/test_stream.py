@@ -7,7 +7,7 @@ import socket
 import time
 
 from harness.images import decode_jpeg, decode_png, difference
-from harness.server import ServerTestCase
+from harness.server import CONVERGED_SAMPLES, FEW_SAMPLES, ServerTestCase
 from harness.viewer import FLAG_FIRST_AFTER_DROP, FLAG_KEY, Viewer
 
 
@@ -60,7 +60,7 @@ class Frames(ServerTestCase):
         async with Viewer(self.server) as viewer:
             await viewer.call("camera.set", {"eye": [3, 2, 2]})
             final = await viewer.rest()
-            self.assertEqual(final.header["sample_count"], 4)
+            self.assertEqual(final.header["sample_count"], CONVERGED_SAMPLES)
             self.assertGreaterEqual(final.header["quality"], 95)
             self.assertTrue(decode_jpeg(final.payload).full_chroma)
             received, cpu = viewer.bytes_received, self.server.cpu_seconds()
@@ -80,7 +80,7 @@ class Frames(ServerTestCase):
                 frame = await viewer.next_frame()
                 samples.append(frame.header["sample_count"])
                 final = frame if frame.final else None
-            self.assertEqual(samples[-1], 64)
+            self.assertEqual(samples[-1], 64 + FEW_SAMPLES["reference"]["samples"])
             # As they come at first, then ever fewer: 64 samples are a few doublings.
             late = [count for count in samples if count >= 16]
             self.assertLess(len(late), 24, samples)

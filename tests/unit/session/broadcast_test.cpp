@@ -35,11 +35,13 @@ class BroadcastTest : public testing::Test {
     session_->viewers().start(viewer);
     ASSERT_TRUE(session_->viewers().configure(viewer, {.quality = quality}));
   }
-  void render(FramePurpose purpose = FramePurpose::interactive, std::uint32_t samples = 1) {
+  void render(FramePurpose purpose = FramePurpose::interactive, std::uint32_t samples = 1,
+              std::uint64_t start_us = 0) {
     auto frame = std::make_shared<RenderedFrame>();
     frame->frame.width = frame->frame.height = 16;
     frame->frame.jpeg = {.quality = 80, .bytes = encoded_};
     frame->header.sample_count = samples;
+    frame->header.render_start_us = start_us;
     broadcast_->rendered(std::move(frame), purpose);
   }
   /// The frame that the viewer is sent, once it is encoded.
@@ -98,6 +100,26 @@ TEST_F(BroadcastTest, ReadsPixelsForViewersOfOtherQualities) {
   ASSERT_TRUE(sent("b"));
   EXPECT_EQ(sent("a")->payload, encoded_);
   EXPECT_EQ(measurements_.totals().encoded_by.at(protocol::PassKind::host), 1u);
+}
+
+TEST_F(BroadcastTest, SendsRefiningFramesAgainAfterSomeSeconds) {
+  join("a", 80);
+  render(FramePurpose::refining, 64, 1'000'000);
+  ASSERT_TRUE(pump(1));
+  ASSERT_TRUE(sent("a"));
+  ASSERT_TRUE(session_->viewers().acknowledge("a", {.frame_seq = 1}));
+  render(FramePurpose::refining, 65, 4'900'000);
+  EXPECT_FALSE(broadcast_->pump());
+  render(FramePurpose::refining, 66, 5'000'000);
+  bool begun = pump(1);
+  for (int i = 0; i < 5000 && !begun; ++i) {  // as soon as the rate of the viewer allows it
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    begun = broadcast_->pump();
+  }
+  ASSERT_TRUE(begun);
+  const stream::SharedFrame frame = sent("a");
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->header.sample_count, 66u);
 }
 
 TEST_F(BroadcastTest, EncodesFinalFrameFromPixels) {
