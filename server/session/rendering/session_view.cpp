@@ -212,6 +212,12 @@ bool SessionView::moves() const {
   return Clock::now() < moving_frame_at_ + sharing_window;
 }
 
+bool SessionView::refines() const {
+  // What is being prepared is not touched.
+  return !preparing_.valid() && newest_ && !session_->timeline().in_lockstep() &&
+         !readers_.has_captures() && next_view_state(view_inputs()) == ViewState::refining;
+}
+
 /// A GPU has to copy it, which takes as long as a fast frame; and frames that come this often need
 /// nothing between them.
 bool SessionView::depth_pays() const {
