@@ -126,7 +126,7 @@ class LoadSocket(asyncio.Protocol):
         for future in (self.upgraded, *self._answers.values(), *(one for _, one in self._waiting)):
             if not future.done():
                 future.set_exception(gone if future is self.upgraded else Refused(self.close_code))
-                future.exception()  # whether somebody still waits for it is not known
+                future.exception()  # it may be that nothing waits for it any more
         if not self.ended.done():
             self.ended.set_result(time.monotonic())
 
