@@ -1,5 +1,6 @@
 """The Debian packages: installation on a bare system, operation, complete removal."""
 
+import filecmp
 import os
 import re
 import shutil
@@ -33,6 +34,23 @@ class Installed(unittest.TestCase):
                                        unit))
                 self.assertEqual(named, {f"{settings}/heliograph"})
                 self.assertTrue(os.path.exists(f"{folder}{settings}/heliograph/heliograph.toml"))
+
+
+class Reproducible(unittest.TestCase):
+    def test_two_packages_of_a_build_have_the_same_bytes(self):
+        with tempfile.TemporaryDirectory(dir="/var/tmp") as folder:
+            made = [packages.of_this_build(os.path.join(folder, name)) for name in ("one", "two")]
+            self.assertTrue(filecmp.cmp(*made, shallow=False))
+
+    def test_the_umask_does_not_close_its_folders(self):
+        before = os.umask(0o077)
+        try:
+            with tempfile.TemporaryDirectory(dir="/var/tmp") as folder:
+                listed = run("dpkg-deb", "--contents", packages.of_this_build(folder))
+        finally:
+            os.umask(before)
+        self.assertEqual([line for line in listed.splitlines()
+                          if not line.startswith(("drwxr-xr-x", "-rw-r--r--", "-rwxr-xr-x"))], [])
 
 
 class PackageTest:

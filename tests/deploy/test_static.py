@@ -102,6 +102,25 @@ class BillOfMaterials(unittest.TestCase):
         for package in packages.values():
             self.assertTrue(package["versionInfo"], package)
 
+    @unittest.skipUnless(shutil.which("dpkg-query") and shutil.which("node"), "needs dpkg and node")
+    def test_names_what_made_the_page(self):
+        with tempfile.TemporaryDirectory() as folder:
+            lock = os.path.join(folder, "package-lock.json")
+            with open(lock, "w", encoding="utf-8") as file:
+                json.dump({"packages": {"": {"name": "page"}, "node_modules/a/node_modules/@b/c": {
+                    "version": "1.2.3", "license": "MIT", "integrity": "sha512-/+4="}}}, file)
+            bill = json.loads(run(os.path.join(DEPLOY, "sbom.sh"), "lister", "1.2", "--npm", lock,
+                                  "--tool", shutil.which("dpkg-query"), "/usr/bin/ls"))
+        module = next(one for one in bill["packages"] if one["name"] == "@b/c")
+        self.assertEqual((module["versionInfo"], module["licenseDeclared"],
+                          module["checksums"][0]["checksumValue"],
+                          module["externalRefs"][0]["referenceLocator"]),
+                         ("1.2.3", "MIT", "ffee", "pkg:npm/%40b/c@1.2.3"))
+        tools = {relation["spdxElementId"] for relation in bill["relationships"]
+                 if relation["relationshipType"] == "BUILD_TOOL_OF"}
+        named = {one["SPDXID"]: one["name"] for one in bill["packages"]}
+        self.assertEqual({named[tool] for tool in tools}, {"@b/c", "dpkg"})
+
 
 class Unit(unittest.TestCase):
     def setUp(self):
@@ -138,7 +157,8 @@ class Dockerfile(unittest.TestCase):
                           and not path.endswith(".md")}, set())
         for path in ("deploy/packages", "deploy/setup.sh", "deploy/closure.sh", "deploy/sbom.sh",
                      "deploy/debian/postinst", "deploy/systemd/heliograph.service",
-                     "deploy/CMakeLists.txt", "LICENSE"):
+                     "deploy/CMakeLists.txt", "deploy/package_time.cmake.in",
+                     "deploy/package_permissions.cmake", "LICENSE"):
             self.assertIn(path, kept)
 
 

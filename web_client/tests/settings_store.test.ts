@@ -81,7 +81,7 @@ test("a rejected change is reported and the server's value returns", async () =>
 
 test("a reset sends null and shows the default", async () => {
   const { store, answer } = await connected();
-  store.receive({ exposure: { ev: 3 } });
+  store.receive({ patch: { exposure: { ev: 3 } }, rev: 2 });
   assert.equal(store.value("exposure.ev"), 3);
   store.reset("exposure.ev");
   assert.equal(store.value("exposure.ev"), 0);
@@ -91,7 +91,7 @@ test("a reset sends null and shows the default", async () => {
 
 test("resetting a group touches only what was changed", async () => {
   const { store, answer } = await connected();
-  store.receive({ exposure: { auto: true } });
+  store.receive({ patch: { exposure: { auto: true } }, rev: 2 });
   const group = store.schema.value.groups[0];
   assert.ok(group);
   store.resetGroup(group);

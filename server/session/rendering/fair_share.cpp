@@ -10,6 +10,8 @@ using std::chrono::milliseconds;
 
 /// The device does not wait for longer pauses.
 constexpr milliseconds max_wait{40};
+/// A frame is charged as at most so many of its view's usual ones.
+constexpr int most_usual_frames = 3;
 /// How often the number of turns doubles for which a view is skipped after unsuccessful waits.
 constexpr int max_doublings = 6;
 
@@ -66,7 +68,9 @@ void FairShare::charge(Key key, Clock::time_point begin, Clock::time_point end) 
   }
   paid.skipped = false;
   paid.last_work = end - begin;
-  paid.next_start += paid.last_work;
+  if (paid.turn == 0) paid.usual_work = paid.last_work;
+  paid.next_start += std::min(paid.last_work, most_usual_frames * paid.usual_work);
+  paid.usual_work += (paid.last_work - paid.usual_work) / 4;
   paid.turn = ++turns_;
   paid.ended = end;
   accounts_[key] = paid;

@@ -22,7 +22,11 @@ using stream::Clock;
 /// own. So the device waits for it during that pause, at the expense of the view it waits for,
 /// before a long frame begins (anticipatory scheduling: Iyer and Druschel, SOSP 2001). After an
 /// unsuccessful wait the view is skipped until it has worked again, and then for a number of turns
-/// that doubles with each unsuccessful wait. Pure logic; not thread safe.
+/// that doubles with each unsuccessful wait.
+///
+/// A frame may take far longer than those before it because the processors did something else.
+/// Charged in full it would keep its view waiting until each of the others had as much: a second in
+/// fifty views is nearly a minute. Pure logic; not thread safe.
 class FairShare {
  public:
   using Key = const void*;
@@ -42,6 +46,7 @@ class FairShare {
     Duration next_start{0};  // virtual time
     std::uint64_t turn = 0;  // of its last work
     Duration last_work{0};
+    Duration usual_work{0};                          // of a frame, smoothed
     Duration pause{std::chrono::milliseconds(4)};    // between its frames, smoothed
     Clock::time_point ended{};                       // its last work
     std::optional<Clock::time_point> awaited_since;  // other views have been held back for it

@@ -179,7 +179,7 @@ void RenderLoop::remove_closed() {
   for (const auto& view : closed) {
     if (in_flight_ && in_flight_->view == view) in_flight_.reset();
     view->refuse_captures();
-    fair_share_.remove(view.get());
+    turns_.remove(view.get());
   }
 }
 
@@ -187,18 +187,21 @@ void RenderLoop::remove_closed() {
 /// session; then the first session in order of turns that has a frame due renders it. While images
 /// move, references that were not asked for wait.
 bool RenderLoop::advance_next(const Views& views) {
-  std::vector<FairShare::Key> ready;
+  std::vector<DeviceTurns::Contender> ready;
   for (const auto& view : views) {
-    if (view->awake() && !view->in_flight()) ready.push_back(view.get());
+    if (view->awake() && !view->in_flight()) {
+      ready.push_back({.view = view.get(), .refines = view->refines()});
+    }
   }
-  fair_share_.sort(ready);
+  turns_.sort(ready);
   held_back_until_.reset();
   const auto moving = std::ranges::count_if(views, [](const auto& view) { return view->moves(); });
   if (moving > 0) moved_at_ = Clock::now();
   Views drawing;
-  for (const FairShare::Key key : ready) {
+  for (const DeviceTurns::Contender& contender : ready) {
     if (stopping_ || !device_ready_) return false;
-    const auto& view = *std::ranges::find(views, key, &std::shared_ptr<SessionView>::get);
+    const auto& view =
+        *std::ranges::find(views, contender.view, &std::shared_ptr<SessionView>::get);
     view->share_device(static_cast<std::size_t>(moving));
     const SessionView::Work work = advance(*view, false);
     if (work == SessionView::Work::small) return true;
@@ -216,7 +219,8 @@ bool RenderLoop::advance_next(const Views& views) {
 bool RenderLoop::draw_in_turn(const std::shared_ptr<SessionView>& view) {
   if (stopping_ || !device_ready_) return false;
   const Clock::time_point start = Clock::now();
-  if (const auto until = fair_share_.hold_back(view.get(), start)) {
+  const DeviceTurns::Contender contender{.view = view.get(), .refines = view->refines()};
+  if (const auto until = turns_.hold_back(contender, start)) {
     held_back_until_ = held_back_until_ ? std::min(*held_back_until_, *until) : *until;
     return false;
   }
@@ -224,9 +228,9 @@ bool RenderLoop::draw_in_turn(const std::shared_ptr<SessionView>& view) {
   // The device goes on with this frame while that of another view is shown.
   finish_frame();
   if (view->in_flight() && device_ready_) {
-    in_flight_ = {view, start};
+    in_flight_ = {view, start, contender.refines};
   } else if (work == SessionView::Work::drawing) {
-    frame_finished(*view, start);
+    frame_finished(*view, start, contender.refines);
   }
   return work != SessionView::Work::none;
 }
@@ -237,14 +241,14 @@ bool RenderLoop::finish_frame() {
   if (!finished) return false;
   SessionView& view = *finished->view;
   if (attempt(view, [&] { view.finish_frame(device_free_); })) {
-    frame_finished(view, std::max(finished->begun, device_free_));
+    frame_finished(view, std::max(finished->begun, device_free_), finished->refines);
   }
   return true;
 }
 
-void RenderLoop::frame_finished(SessionView& view, Clock::time_point begun) {
+void RenderLoop::frame_finished(SessionView& view, Clock::time_point begun, bool refines) {
   device_free_ = Clock::now();
-  fair_share_.charge(&view, begun, device_free_);
+  turns_.charge({.view = &view, .refines = refines}, begun, device_free_);
   {
     const std::lock_guard lock(mutex_);
     busy_.add(begun, device_free_);

@@ -12,7 +12,7 @@
 #include "render/api/devices.hpp"
 #include "session/devices/device_migration.hpp"
 #include "session/devices/placement.hpp"
-#include "session/rendering/fair_share.hpp"
+#include "session/rendering/device_turns.hpp"
 #include "session/rendering/retry_backoff.hpp"
 #include "session/rendering/session_view.hpp"
 
@@ -82,7 +82,7 @@ class RenderLoop {
   bool draw_in_turn(const std::shared_ptr<SessionView>& view);
   SessionView::Work advance(SessionView& view, bool may_draw);
   bool finish_frame();
-  void frame_finished(SessionView& view, Clock::time_point begun);
+  void frame_finished(SessionView& view, Clock::time_point begun, bool refines);
   /// Runs `work` of a view, whose failure is not that of others. @returns whether it succeeded
   bool attempt(SessionView& view, const std::function<void()>& work);
   std::optional<Clock::time_point> next_due(const Views& views) const;
@@ -93,7 +93,7 @@ class RenderLoop {
 
   render::Engine& engine_;
   const Clock::duration release_after_;
-  FairShare fair_share_;  // of the render thread
+  DeviceTurns turns_;  // of the render thread
   const std::shared_ptr<WakeEvent> wake_ = std::make_shared<WakeEvent>();
   Measurements& measurements_;
   DeviceMigration migration_;
@@ -119,6 +119,7 @@ class RenderLoop {
   struct InFlight {
     std::shared_ptr<SessionView> view;
     Clock::time_point begun;
+    bool refines = false;
   };
   std::optional<InFlight> in_flight_;
   Clock::time_point device_free_;  // when the device was done with the last frame

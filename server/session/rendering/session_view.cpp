@@ -212,9 +212,14 @@ bool SessionView::moves() const {
   return Clock::now() < moving_frame_at_ + sharing_window;
 }
 
+bool SessionView::refines() const {
+  // What is being prepared is not touched.
+  return !preparing_.valid() && newest_ && !session_->timeline().in_lockstep() &&
+         !readers_.has_captures() && next_view_state(view_inputs()) == ViewState::refining;
+}
+
 bool SessionView::refines_reference() const {
-  return newest_ && newest_version_ == session_->version() && readers_.empty() &&
-         !state_.lockstep && lacks_reference_alone(state_.settings, newest_->frame);
+  return refines() && readers_.empty() && lacks_reference_alone(state_.settings, newest_->frame);
 }
 
 /// A GPU has to copy it, which takes as long as a fast frame; and frames that come this often need

@@ -48,6 +48,8 @@ class SessionView {
 
   /// Whether there may be something to do.
   bool awake() const;
+  /// Whether its next frame only adds samples to a static image, and no capture waits for it.
+  bool refines() const;
   /// Whether its frames of a moving view take turns with those of other sessions.
   bool moves() const;
   /// How many sessions' do.

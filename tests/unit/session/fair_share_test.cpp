@@ -126,6 +126,29 @@ TEST_F(FairShareTest, EqualViewsAlternate) {
   }
 }
 
+TEST_F(FairShareTest, AFrameThatWasHeldUpDoesNotKeepItsViewWaiting) {
+  for (const char* name : {"a", "b", "c", "d", "e", "f"}) workers_[name] = {.cost = 10ms};
+  run_for(4s);
+  Worker& held_up = workers_["a"];
+  held_up.cost = 1s;
+  const int before = held_up.pieces;
+  while (held_up.pieces == before) run_for(1ms);
+  held_up.cost = 10ms;
+  held_up.longest_wait = {};
+  run_for(10s);
+  EXPECT_LE(held_up.longest_wait, 200ms);
+}
+
+TEST_F(FairShareTest, ViewsThatBecomeExpensivePayForIt) {
+  workers_["heavy"] = {.cost = 10ms};
+  workers_["light"] = {.cost = 10ms};
+  run_for(4s);
+  workers_["heavy"].cost = 200ms;
+  const auto before = workers_["light"].worked;
+  run_for(20s);
+  EXPECT_NEAR(static_cast<double>((workers_["light"].worked - before).count()), 10000.0, 700.0);
+}
+
 TEST_F(FairShareTest, LightLoadHasLowLatency) {
   workers_["greedy"] = {.cost = 50ms};
   workers_["modest"] = {.cost = 10ms, .interval = 100ms};

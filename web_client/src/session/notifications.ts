@@ -35,7 +35,7 @@ interface Targets {
 export function receiveNotification(targets: Targets, method: string, params: unknown): void {
   switch (method) {
     case "settings.changed":
-      targets.settings.receive((params as Notifications["settings.changed"]).patch);
+      targets.settings.receive(params as Notifications["settings.changed"]);
       break;
     case "camera.changed":
       targets.takeCamera((params as Notifications["camera.changed"]).camera);

@@ -5,12 +5,6 @@ import { type OpenRpc, choicesOf } from "heliograph/openrpc.ts";
 import type { RpcPeer } from "heliograph/rpc.ts";
 import { Signal } from "../common/signal.ts";
 
-/** So many frames of older settings may still arrive after a change. */
-const framesOnTheWay = 3;
-
-// A static view may send fewer frames than that.
-const lateReadMs = 3000;
-
 export class ServerCapabilities {
   readonly buffers = new Signal<BufferInfo[]>([]);
   /** File formats of `frame.capture`. */
@@ -21,9 +15,10 @@ export class ServerCapabilities {
   /** Whether the server renders jobs. */
   jobs = false;
   private readonly rpc: RpcPeer;
-  /** Frames to draw before the list of buffers is read again; null: it is up to date. */
-  private framesUntilRead: number | null = null;
-  private lateRead: ReturnType<typeof setTimeout> | undefined;
+  /** A frame of this revision may have other buffers than are listed; null: none is awaited. */
+  private awaitedRev: number | null = null;
+  /** Of the newest frame that was drawn. */
+  private drawnRev = 0;
 
   constructor(rpc: RpcPeer) {
     this.rpc = rpc;
@@ -47,26 +42,33 @@ export class ServerCapabilities {
     this.jobs = list !== false && (await list.then(() => true).catch(() => false));
   }
 
-  /** The list of buffers depends on the scene and on settings. */
+  /** The buffers of the newest frame; they depend on the scene and on settings. */
   async readBuffers(): Promise<void> {
-    this.framesUntilRead = null;
     const { buffers } = await this.rpc.request("frame.buffers");
     const names = (list: BufferInfo[]): string => list.map(({ name }) => name).join();
     if (names(buffers) !== names(this.buffers.value)) this.buffers.set(buffers);
   }
 
-  /** Frames with these settings may have other buffers. */
-  settingsChanged(): void {
-    this.framesUntilRead = framesOnTheWay;
-    clearTimeout(this.lateRead);
-    this.lateRead = setTimeout(() => {
-      if (this.framesUntilRead !== null) void this.readBuffers().catch(() => undefined);
-    }, lateReadMs);
+  /** Frames of this revision of the session or a newer one may have other buffers. */
+  async changedAt(rev: number): Promise<void> {
+    this.awaitedRev = Math.max(rev, this.awaitedRev ?? 0);
+    await this.readIfDrawn();
   }
 
-  async frameDrawn(): Promise<void> {
-    if (this.framesUntilRead === null) return;
-    this.framesUntilRead -= 1;
-    if (this.framesUntilRead <= 0) await this.readBuffers();
+  async frameDrawn(rev: number): Promise<void> {
+    this.drawnRev = rev;
+    await this.readIfDrawn();
+  }
+
+  /** Revisions of another session are not comparable. */
+  reset(): void {
+    this.awaitedRev = null;
+    this.drawnRev = 0;
+  }
+
+  private async readIfDrawn(): Promise<void> {
+    if (this.awaitedRev === null || this.drawnRev < this.awaitedRev) return;
+    this.awaitedRev = null;
+    await this.readBuffers();
   }
 }

@@ -27,6 +27,8 @@ const noControls: ControlGroup = {
 export class SettingsStore {
   readonly schema = new Signal<ControlGroup>(noControls);
   readonly tree = new Signal<JsonObject>({});
+  /** Revision of the session at the newest change that the server has told of. */
+  readonly rev = new Signal<number>(0);
   private readonly history: UndoHistory;
   private readonly rpc: RpcPeer;
   private readonly failed: (error: unknown) => void;
@@ -58,6 +60,7 @@ export class SettingsStore {
     } else {
       this.tree.set(state.settings);
     }
+    this.rev.set(state.rev);
   }
 
   value(path: string): JsonValue | undefined {
@@ -91,6 +94,7 @@ export class SettingsStore {
     const answer = await this.rpc.request("settings.preset", { name });
     this.remember(`preset ${presetLabel(name)}`, answer.applied, before);
     this.tree.set(mergePatch(this.tree.value, answer.applied, this.defaults));
+    this.rev.set(answer.rev);
     return answer.applied;
   }
 
@@ -112,8 +116,9 @@ export class SettingsStore {
   }
 
   /** Takes a change by another viewer. */
-  receive(patch: JsonObject): void {
+  receive({ patch, rev }: { patch: JsonObject; rev: number }): void {
     this.tree.set(mergePatch(this.tree.value, patch, this.defaults));
+    this.rev.set(rev);
   }
 
   private remember(label: string, patch: JsonObject, before: JsonObject): void {
@@ -142,6 +147,7 @@ export class SettingsStore {
         const answer = await this.rpc.request("settings.patch", { patch });
         const confirmed = mergePatch(this.tree.value, answer.applied, this.defaults);
         this.tree.set(mergePatch(confirmed, this.unsent ?? {}, this.defaults));
+        this.rev.set(answer.rev);
       } catch (error) {
         if (error instanceof ChannelClosed) break;
         this.failed(error);

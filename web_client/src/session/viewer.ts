@@ -216,12 +216,15 @@ export class Viewer {
       if (kind === "live") return;
       this.receivedHello = null;
       this.loading.reset();
+      this.capabilities.reset();
       this.stream.end();
       // The first frames of a new connection may have another size or view.
       this.connection.hold();
     });
     this.animation.watch(() => (this.animationReadAt = Date.now()));
-    this.settings.tree.watch(() => this.capabilities.settingsChanged());
+    this.settings.rev.watch((rev) => {
+      if (rev > 0) void this.attempt(() => this.capabilities.changedAt(rev));
+    });
   }
 
   get hello(): Hello | null {
@@ -362,8 +365,10 @@ export class Viewer {
     this.connection.predict(null);
     this.animationRev = 0;
     this.loading.reset();
+    this.capabilities.reset();
     this.stream.sessionChanged();
     await this.readScene();
+    await this.capabilities.changedAt(this.camera.value?.rev ?? 0);
     void this.bookmarks.read();
   }
 
@@ -373,7 +378,8 @@ export class Viewer {
     this.scene.set(info);
     this.scenes.set({ ...this.scenes.value, current: info.name });
     await this.attempt(() => this.readScene());
-    await this.attempt(() => this.capabilities.readBuffers());
+    const rev = this.camera.value?.rev ?? 0;
+    await this.attempt(() => this.capabilities.changedAt(rev));
   }
 
   /** A scene that this page has loaded. */
@@ -395,7 +401,7 @@ export class Viewer {
     if (frame.codec === Codec.h264) this.stream.onVideoFrame();
     this.loading.frameDrawn(frame.stateRev);
     this.frame.set(frame);
-    void this.attempt(() => this.capabilities.frameDrawn());
+    void this.attempt(() => this.capabilities.frameDrawn(frame.stateRev));
   }
 
   /** In lockstep no frame comes before the next step. */

@@ -1,0 +1,129 @@
+#include "session/rendering/device_turns.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <list>
+
+namespace heliograph::session {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Simulates a device with views that are ready for their next frame a pause after the last one.
+class DeviceTurnsTest : public testing::Test {
+ protected:
+  using Milliseconds = std::chrono::milliseconds;
+
+  struct View {
+    Milliseconds cost;
+    bool refines = false;
+    Milliseconds pause{0};
+    Clock::time_point ready{};
+    Milliseconds worked{0};
+    int frames = 0;
+    Milliseconds longest_wait{0};  // from being ready to the beginning
+  };
+
+  View& add(const View& view) {
+    views_.push_back(view);
+    views_.back().ready = time_;
+    return views_.back();
+  }
+
+  void run_for(Milliseconds duration) {
+    for (const Clock::time_point end = time_ + duration; time_ < end;) {
+      if (View* const next = choose()) {
+        draw(*next);
+      } else {
+        time_ += 1ms;
+      }
+    }
+  }
+
+  View* choose() {
+    std::vector<DeviceTurns::Contender> contenders;
+    for (View& view : views_) contenders.push_back({.view = &view, .refines = view.refines});
+    turns_.sort(contenders);
+    for (const DeviceTurns::Contender& contender : contenders) {
+      auto* const view = static_cast<View*>(const_cast<void*>(contender.view));
+      if (view->ready <= time_ && !turns_.hold_back(contender, time_)) return view;
+    }
+    return nullptr;
+  }
+
+  void draw(View& view) {
+    const auto waited = std::chrono::duration_cast<Milliseconds>(time_ - view.ready);
+    view.longest_wait = std::max(view.longest_wait, waited);
+    const Clock::time_point begin = time_;
+    time_ += view.cost;
+    view.worked += view.cost;
+    ++view.frames;
+    view.ready = time_ + view.pause;
+    turns_.charge({.view = &view, .refines = view.refines}, begin, time_);
+  }
+
+  DeviceTurns turns_;
+  std::list<View> views_;
+  Clock::time_point time_{1h};
+};
+
+TEST_F(DeviceTurnsTest, ManyRefiningViewsDelayAMovingOneByOneFrame) {
+  for (int i = 0; i < 49; ++i) add({.cost = 40ms, .refines = true});
+  View& moving = add({.cost = 20ms, .pause = 4ms});
+  run_for(10s);
+  EXPECT_LE(moving.longest_wait, 40ms);
+  EXPECT_GE(moving.worked, 4000ms);
+  for (const View& view : views_) EXPECT_GE(view.frames, 2) << "starved";
+}
+
+TEST_F(DeviceTurnsTest, AnOverloadThatEndsLeavesNoBacklog) {
+  for (int i = 0; i < 50; ++i) add({.cost = 20ms, .pause = 4ms});
+  run_for(10s);
+  View& moving = views_.front();
+  for (View& view : views_) view.refines = &view != &moving;
+  run_for(1s);
+  moving.longest_wait = {};
+  run_for(10s);
+  EXPECT_LE(moving.longest_wait, 40ms);
+}
+
+TEST_F(DeviceTurnsTest, ARefiningViewThatMovesAgainIsDrawnNext) {
+  for (int i = 0; i < 50; ++i) add({.cost = 40ms, .refines = true});
+  run_for(10s);
+  View& moving = views_.front();
+  moving.refines = false;
+  moving.ready = time_;
+  moving.longest_wait = {};
+  run_for(1s);
+  EXPECT_LE(moving.longest_wait, 40ms);
+}
+
+TEST_F(DeviceTurnsTest, RefiningViewsShareAllOfAnIdleDeviceEqually) {
+  for (int i = 0; i < 4; ++i) add({.cost = 10ms, .refines = true});
+  run_for(4s);
+  for (const View& view : views_) EXPECT_EQ(view.frames, 100);
+}
+
+TEST_F(DeviceTurnsTest, OneOfEachKindHasHalfOfTheDevice) {
+  View& refining = add({.cost = 40ms, .refines = true});
+  View& moving = add({.cost = 20ms});
+  run_for(10s);
+  EXPECT_NEAR(static_cast<double>(refining.worked.count()), 5000.0, 100.0);
+  EXPECT_NEAR(static_cast<double>(moving.worked.count()), 5000.0, 100.0);
+}
+
+TEST_F(DeviceTurnsTest, ARemovedViewHasNoDebt) {
+  const int key = 0;
+  const int other = 0;
+  turns_.charge({.view = &key, .refines = true}, time_, time_ + 10s);
+  turns_.remove(&key);
+  turns_.charge({.view = &other, .refines = true}, time_ + 10s, time_ + 11s);
+  std::vector<DeviceTurns::Contender> contenders{{.view = &other, .refines = true},
+                                                 {.view = &key, .refines = true}};
+  turns_.sort(contenders);
+  EXPECT_EQ(contenders.front().view, &key);
+}
+
+}  // namespace
+}  // namespace heliograph::session
