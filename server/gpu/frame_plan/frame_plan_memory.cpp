@@ -80,7 +80,7 @@ std::optional<Lifetime> FramePlan::shared_lifetime(std::uint32_t index) const {
   const VkMemoryRequirements needed = requirements_of(device_, resource);
   lifetime.bytes = needed.size;
   lifetime.alignment = needed.alignment;
-  lifetime.seldom = is_undefined_when_skipped(index);
+  lifetime.rare = is_undefined_when_skipped(index);
   return lifetime;
 }
 

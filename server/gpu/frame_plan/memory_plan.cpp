@@ -46,7 +46,7 @@ MemoryPlan plan_memory(std::span<const Lifetime> lifetimes, std::uint64_t most_b
   std::vector<std::size_t> order(lifetimes.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    if (lifetimes[a].seldom != lifetimes[b].seldom) return lifetimes[b].seldom;
+    if (lifetimes[a].rare != lifetimes[b].rare) return lifetimes[b].rare;
     return lifetimes[a].bytes > lifetimes[b].bytes;
   });
   MemoryPlan plan{.places = std::vector<MemoryPlan::Place>(lifetimes.size()), .block_bytes = {}};

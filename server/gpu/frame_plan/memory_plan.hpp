@@ -14,7 +14,7 @@ struct Lifetime {
   std::uint64_t alignment = 1;  // a power of two
   std::uint32_t first = 0;
   std::uint32_t last = 0;
-  bool seldom = false;  // few frames use it
+  bool rare = false;  // few frames use it
 };
 
 struct MemoryPlan {

@@ -87,7 +87,7 @@ TEST(MemoryPlan, UsesWhatIsFreeBesideFixedPlacesWithoutGrowingTheirBlocks) {
 }
 
 TEST(MemoryPlan, PlacesWhatFewFramesUseBehindEverythingElse) {
-  const std::vector<Lifetime> frame{{.bytes = 100, .first = 0, .last = 9, .seldom = true},
+  const std::vector<Lifetime> frame{{.bytes = 100, .first = 0, .last = 9, .rare = true},
                                     {.bytes = 60, .first = 0, .last = 4},
                                     {.bytes = 40, .first = 2, .last = 5}};
   const MemoryPlan plan = plan_memory(frame, no_limit);
