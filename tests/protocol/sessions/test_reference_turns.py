@@ -3,17 +3,13 @@
 import asyncio
 
 from harness.exposition import parse
-from harness.server import Server, ServerTestCase
+from harness.server import ServerTestCase
 from harness.viewer import Viewer
 
 SECONDS = 2
 
 
 class ReferenceTurns(ServerTestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.server = Server("--scene", "mirror", "--set", "reference.samples=65536")
-
     def rendered(self):
         """Frames of all sessions so far."""
         family = parse(self.server.get("/metrics")[2].decode())["heliograph_render_seconds"]
@@ -32,6 +28,7 @@ class ReferenceTurns(ServerTestCase):
         return rendered, last - first
 
     async def test_they_wait_while_another_image_moves(self):
+        self.server.call("settings.patch", {"patch": {"reference": {"samples": 65536}}})
         self.server.call("session.create", {"name": "other", "copy_of": "main"})
         self.addCleanup(self.server.call, "session.close", {"session": "other"})
         async with Viewer(self.server) as static, Viewer(self.server, session="other") as moving:
