@@ -74,8 +74,10 @@ stage.test("the list of buffers follows the settings", async () => {
 
 stage.test("the gallery of buffers has one sample of each at once, and refines them", async () => {
   const { page } = await stage.watch();
-  const most = (max_samples) =>
-    stage.server.call("settings.patch", { patch: { accumulation: { max_samples, by_noise: false } } });
+  const most = (samples) =>
+    stage.server.call("settings.patch", {
+      patch: { accumulation: { max_samples: samples, by_noise: false }, reference: { samples } },
+    });
   await most(65_536);
   await openTab(page, "inspect");
   await page.getByRole("button", { name: "Show thumbnails of all buffers" }).click();
