@@ -268,6 +268,9 @@ class Load:
         await asyncio.gather(*[self.move_closed(session, begin + self.plan.seconds)
                                for session in self.sessions])
         await self.shown(self.sessions)
+        served = [len(session.inputs) for session in self.sessions]
+        self.report(f"closed model, {min(served)} to {max(served)} inputs of a session")
+        self.expect(min(served) >= max(served) / 4, f"sessions were served {min(served)} to {max(served)} times")
         self.tell("closed model, all sessions", self.sessions)
 
     async def among_peers(self, usual):
