@@ -44,6 +44,7 @@ class Plan:
     rate: float  # inputs per second of each session that moves
     beyond: int  # how many are tried beyond each limit
     wait_for_peers: bool  # until the server has ended all that are dead
+    tolerance: float  # seconds more than usual that count as usual
     size: tuple = (160, 90)
 
     def arguments(self):
@@ -227,7 +228,7 @@ class Load:
         self.expect(not missing, f"{what}: {missing} of {len(found)} inputs were never shown")
         values = [one.seconds for one in found]
         self.report(f"{what}: {describe(values)}; {len(frames) / seconds:.1f} frames/s to viewers, "
-                    f"scale {statistics.median(frame.scale for frame in frames):.2f}, "
+                    f"sent at scale {statistics.median(frame.scale for frame in frames):.2f}, "
                     f"processors {served / seconds:.1f} and {own / seconds:.1f} for this program, "
                     f"which was late by {1000 * percentile(self.lateness, 0.99):.0f} ms (p99)")
         self.report("    up to ms: " + ", ".join(f"{bar} {count}" for bar, count in histogram(values)))
@@ -246,7 +247,7 @@ class Load:
         begin = time.monotonic() + 0.1
         stop = begin + self.plan.seconds
         first = asyncio.create_task(self.move_open(
-            self.sessions[0], begin, stop + max(self.plan.seconds, 2 * RECOVERED_WITHIN)))
+            self.sessions[0], begin, stop + RECOVERED_WITHIN + 1))
         others = [asyncio.create_task(self.move_open(session, begin, stop))
                   for session in self.sessions[1:]]
         await asyncio.sleep(self.plan.seconds / 2)
@@ -255,7 +256,7 @@ class Load:
         await first
         await self.shown(self.sessions)
         self.tell("all sessions move, then one", self.sessions)
-        normal = 1.5 * percentile(usual, 0.99) + 0.05
+        normal = 1.5 * percentile(usual, 0.99) + self.plan.tolerance
         after = recovered_after(self.latencies(self.sessions[:1])[:len(self.sessions[0].inputs)],
                                 stop, normal, row=max(5, int(self.plan.rate / 2)))
         self.report(f"latency normal again (at most {1000 * normal:.0f} ms) {after:.2f} s after the others stopped")
@@ -267,6 +268,9 @@ class Load:
         await asyncio.gather(*[self.move_closed(session, begin + self.plan.seconds)
                                for session in self.sessions])
         await self.shown(self.sessions)
+        served = [len(session.inputs) for session in self.sessions]
+        self.report(f"closed model, {min(served)} to {max(served)} inputs of a session")
+        self.expect(min(served) >= max(served) / 4, f"sessions were served {min(served)} to {max(served)} times")
         self.tell("closed model, all sessions", self.sessions)
 
     async def among_peers(self, usual):
@@ -280,7 +284,7 @@ class Load:
         before = await self.metric("connections")
         async with surround(self.server, session.name) as late:
             beside = await self.one_moves(f"one session moves beside {len(DEAD)} dead and 2 slow peers")
-            limit = 2 * percentile(usual, 0.99) + 0.25
+            limit = 2 * percentile(usual, 0.99) + 2 * self.plan.tolerance
             self.expect(percentile(beside, 0.99) <= limit,
                         f"beside slow peers p99 is {percentile(beside, 0.99):.2f} s, limit {limit:.2f}")
             if self.plan.wait_for_peers:
@@ -325,8 +329,11 @@ class Load:
         return self.faults
 
 
-LONG = Plan(sessions=50, viewers=500, seconds=20, rate=10, beyond=20, wait_for_peers=True)
-SHORT = Plan(sessions=3, viewers=24, seconds=1.5, rate=10, beyond=2, wait_for_peers=False)
+LONG = Plan(sessions=50, viewers=500, seconds=20, rate=10, beyond=20, wait_for_peers=True,
+            tolerance=0.1)
+# Beside other tests, which disturb for longer.
+SHORT = Plan(sessions=3, viewers=24, seconds=1, rate=10, beyond=2, wait_for_peers=False,
+             tolerance=0.5)
 
 
 def main():
@@ -340,7 +347,8 @@ def main():
     parser.add_argument("--scene-root")
     options = parser.parse_args()
     plan = Plan(options.sessions, options.viewers, options.seconds, options.rate, options.beyond,
-                wait_for_peers=True, size=tuple(int(side) for side in options.size.split("x")))
+                wait_for_peers=True, tolerance=LONG.tolerance,
+                size=tuple(int(side) for side in options.size.split("x")))
     resource.setrlimit(resource.RLIMIT_NOFILE, (8192, resource.getrlimit(resource.RLIMIT_NOFILE)[1]))
     chosen = ["--scene", options.scene] if options.scene else []
     with Server(*plan.arguments(), *chosen, scenes=options.scene_root) as server:

@@ -212,10 +212,12 @@ bool SessionView::moves() const {
   return Clock::now() < moving_frame_at_ + sharing_window;
 }
 
+/// A view whose newest state has waited for its turn is static by then, but not shown yet.
 bool SessionView::refines() const {
   // What is being prepared is not touched.
-  return !preparing_.valid() && newest_ && !session_->timeline().in_lockstep() &&
-         !readers_.has_captures() && next_view_state(view_inputs()) == ViewState::refining;
+  if (preparing_.valid() || !newest_ || newest_version_ != session_->version()) return false;
+  return !session_->timeline().in_lockstep() && !readers_.has_captures() &&
+         next_view_state(view_inputs()) == ViewState::refining;
 }
 
 bool SessionView::refines_reference() const {

@@ -34,4 +34,4 @@ class Loaded(ServerTestCase):
     arguments = SHORT.arguments()
 
     async def test_viewers_keep_their_latency_and_what_is_too_much_is_refused_at_once(self):
-        self.assertEqual(await Load(self.server, SHORT).run(), [])
+        self.assertEqual(await Load(self.server, SHORT, report=lambda line: None).run(), [])
