@@ -149,10 +149,11 @@ Clock::duration SessionHost::do_idle_work() {
   return std::min<Clock::duration>(next, idle_period);
 }
 
-/// Whether no session has had a frame since this was asked last, or nothing has moved for long.
+/// Whether no session has had a frame since this was asked last, nor is to have one that takes
+/// longer, or nothing has moved for long.
 bool SessionHost::is_idle() {
   const std::uint64_t frames = devices_.totals().frames.count();
-  const bool idle = std::exchange(frames_before_, frames) == frames;
+  const bool idle = std::exchange(frames_before_, frames) == frames && !devices_.are_occupied();
   return ready() && (idle || devices_.still_for() >= still_period);
 }
 

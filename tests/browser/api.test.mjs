@@ -81,15 +81,3 @@ stage.test("on a phone in light colours the API page does not overflow", async (
   assert.ok(content <= window, `${content} px of content in ${window} px`);
   assert.deepEqual(await seriousFindings(page), []);
 });
-
-const token = "control-0123456789";
-const closed = new Stage({ serverArguments: ["--token", token] });
-
-closed.test("without a token the API page asks for one and comes back", async () => {
-  const url = new URL("api", closed.server.url).href;
-  const { page } = await closed.open({ url, expectErrors: true });
-  await page.getByLabel("Access token").fill(token);
-  await page.getByRole("button", { name: "Continue" }).click();
-  await page.getByRole("heading", { name: "camera.orbit" }).waitFor();
-  assert.equal(page.url(), url, "the token is left in the address");
-});

@@ -30,7 +30,7 @@ async function choose(page, kind) {
 }
 
 stage.test("the background is a color, a gradient or the blurred environment", async () => {
-  const { page } = await stage.watch();
+  const { page } = await stage.sharedViewer();
   // The sky alone.
   await stage.server.call("camera.set", { eye: [0, 50, 0], target: [10, 51, 0], up: [0, 1, 0] });
   await stage.server.call("settings.patch", { patch: { tone_map: { curve: "linear" } } });
@@ -68,7 +68,7 @@ stage.test("the background is a color, a gradient or the blurred environment", a
 });
 
 stage.test("the studio can be chosen in every scene", async () => {
-  const { page } = await stage.watch();
+  const { page } = await stage.sharedViewer();
   await page.getByLabel("Environment", { exact: true }).selectOption("studio");
   await eventually(
     async () => (await stage.server.call("environment.list")).current === "studio",

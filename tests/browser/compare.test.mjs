@@ -15,6 +15,8 @@ import { statistics, thumbnail } from "./harness/images.mjs";
 import { Stage } from "./harness/stage.mjs";
 
 const stage = new Stage({
+  samples: 16,
+  resolution: "half",
   view: { viewport: { width: 800, height: 450 } },
 });
 

@@ -14,7 +14,6 @@ import { chooseOutput, dragView, eventually, screenshot } from "./harness/browse
 import { outputFolder } from "./harness/environment.mjs";
 import { Stage } from "./harness/stage.mjs";
 
-const permissions = ["clipboard-read", "clipboard-write"];
 const guestView = { viewport: { width: 1000, height: 640 } };
 
 /** A web server of another origin with one page; `script` is what it serves at /viewer.js. */
@@ -35,12 +34,15 @@ const page = ({ html }) => `<!doctype html><html lang="en"><title>Another site</
 const [allowed, other] = await Promise.all([otherSite(page), otherSite(page)]);
 after(() => [allowed, other].forEach((site) => site.close()));
 const embedded = new Stage({
-  view: { viewport: { width: 720, height: 405 } },
+  view: {
+    viewport: { width: 720, height: 405 },
+    permissions: ["clipboard-read", "clipboard-write"],
+  },
   serverArguments: ["--frame-ancestors", allowed.origin],
 });
 
 async function copiedCode(kind) {
-  const { page } = await embedded.watch({ permissions });
+  const { page } = await embedded.sharedViewer();
   await chooseOutput(page, "Embed in another page");
   const dialog = page.getByRole("dialog", { name: "Embed" });
   await dialog.getByLabel("Kind").selectOption(kind);

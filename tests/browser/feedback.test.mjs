@@ -7,9 +7,11 @@ import { Stage } from "./harness/stage.mjs";
 const stage = new Stage({ scene: "mirror", view: { viewport: { width: 720, height: 405 } } });
 
 stage.test("a static view says how far it is refined, and nothing once it has converged", async () => {
-  const { page } = await stage.watch();
+  const { page } = await stage.sharedViewer();
   const indicator = page.locator("#refining");
-  await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 4096 } } });
+  await stage.server.call("settings.patch", {
+    patch: { accumulation: { max_samples: 4096, by_noise: false } },
+  });
   await stage.server.call("camera.orbit", { yaw: 10, pitch: 0 });
   await indicator.getByText(/^\d+ of 4096 samples$/).waitFor();
   await screenshot(page, "refining");
@@ -41,7 +43,7 @@ stage.test("on a touch screen the help begins with gestures, elsewhere with the 
 });
 
 stage.test("a tooltip goes with what it explains, and with Escape", async () => {
-  const { page } = await stage.watch();
+  const { page } = await stage.sharedViewer();
   const tip = page.getByRole("tooltip");
   const help = page.getByRole("button", { name: "Help (?)" });
   await help.hover();
@@ -57,7 +59,7 @@ stage.test("a tooltip goes with what it explains, and with Escape", async () => 
 });
 
 stage.test("the list of buffers follows the settings", async () => {
-  const { page } = await stage.watch();
+  const { page } = await stage.sharedViewer();
   await openTab(page, "inspect");
   const names = () =>
     page
@@ -73,7 +75,7 @@ stage.test("the list of buffers follows the settings", async () => {
 });
 
 stage.test("the gallery of buffers has one sample of each at once, and refines them", async () => {
-  const { page } = await stage.watch();
+  const { page } = await stage.sharedViewer();
   const most = (samples) =>
     stage.server.call("settings.patch", {
       patch: { accumulation: { max_samples: samples, by_noise: false }, reference: { samples } },

@@ -18,7 +18,7 @@ import { outputFolder } from "./harness/environment.mjs";
 import { difference, statistics, thumbnail } from "./harness/images.mjs";
 import { Stage } from "./harness/stage.mjs";
 
-const stage = new Stage();
+const stage = new Stage({ samples: 16, resolution: "half" });
 
 async function viewImage(page, name) {
   return thumbnail(page, await viewScreenshot(page, name));

@@ -5,6 +5,7 @@ import { eventually, openTab, screenshot } from "./harness/browser.mjs";
 import { Stage } from "./harness/stage.mjs";
 
 const stage = new Stage({
+  resolution: "half",
   view: { viewport: { width: 1000, height: 900 } },
   prepare: async (page) => {
     await openTab(page, "scene");

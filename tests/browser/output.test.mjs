@@ -10,9 +10,13 @@ import { outputFolder } from "./harness/environment.mjs";
 import { difference, statistics, thumbnail } from "./harness/images.mjs";
 import { Stage } from "./harness/stage.mjs";
 
-const permissions = ["clipboard-read", "clipboard-write"];
-const view = { viewport: { width: 720, height: 405 } };
-const stage = new Stage({ view, resolution: "auto" });
+const stage = new Stage({
+  resolution: "auto",
+  view: {
+    viewport: { width: 720, height: 405 },
+    permissions: ["clipboard-read", "clipboard-write"],
+  },
+});
 
 async function openSave(page, { format = "png", samples = "converged" } = {}) {
   await chooseOutput(page, "Save image");
@@ -47,7 +51,7 @@ function exrWindow(bytes) {
 }
 
 stage.test("saved PNG and EXR images equal captures of the server", async () => {
-  const { page } = await stage.watch();
+  const { page } = await stage.sharedViewer();
   await settle(page, stage.server);
   const png = await saved(page);
   assert.match(png.name, /^shadow_objects\.png$/);
@@ -62,7 +66,7 @@ stage.test("saved PNG and EXR images equal captures of the server", async () => 
 });
 
 stage.test("an image is saved at once as it is, and a converged one can be cancelled", async () => {
-  const { page } = await stage.watch();
+  const { page } = await stage.sharedViewer();
   await settle(page, stage.server);
   // Converging takes so long that only what is there already can be saved.
   await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 65536 } } });
@@ -96,31 +100,31 @@ stage.test("an image is saved at once as it is, and a converged one can be cance
 });
 
 stage.test("an image is saved in another size, with linked sides and progress", async () => {
-  await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 16 } } });
-  const { page } = await stage.watch();
+  await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 8 } } });
+  const { page } = await stage.sharedViewer();
   await settle(page, stage.server);
   const dialog = await openSave(page);
   const [width, height] = ["Width", "Height"].map((name) =>
     dialog.getByRole("textbox", { name }),
   );
   assert.deepEqual([await width.inputValue(), await height.inputValue()], ["720", "405"]);
-  await width.fill("1440");
+  await width.fill("960");
   await width.press("Tab");
-  assert.equal(await height.inputValue(), "810");
+  assert.equal(await height.inputValue(), "540");
   await dialog.getByRole("button", { name: "Keep the aspect ratio" }).click();
   await height.fill("99999");
   await height.press("Tab");
   assert.equal(await height.inputValue(), "2160");
-  await height.fill("700");
+  await height.fill("500");
   await screenshot(page, "save_size");
   assert.deepEqual(await seriousFindings(page), []);
   const save = dialog.getByRole("button", { name: "Save", exact: true });
   const png = await downloaded(page, async () => {
     await save.click();
-    await dialog.getByText(/Rendering: [1-9]\d* of 16 samples/).waitFor();
+    await dialog.getByText(/Rendering: [1-9]\d* of 8 samples/).waitFor();
   });
-  assert.deepEqual([png.bytes.readUInt32BE(16), png.bytes.readUInt32BE(20)], [1440, 700]);
-  await page.locator(".toast", { hasText: "1440 x 700 pixels, 16 samples" }).waitFor();
+  assert.deepEqual([png.bytes.readUInt32BE(16), png.bytes.readUInt32BE(20)], [960, 500]);
+  await page.locator(".toast", { hasText: "960 x 500 pixels, 8 samples" }).waitFor();
   const sessions = async () => (await stage.server.call("session.list")).sessions.length;
   await eventually(async () => (await sessions()) === 1, "the copy to end");
 
@@ -132,11 +136,11 @@ stage.test("an image is saved in another size, with linked sides and progress", 
   await eventually(async () => (await sessions()) === 2, "a copy");
   await again.getByRole("button", { name: "Cancel" }).click();
   await eventually(async () => (await sessions()) === 1, "the copy to end");
-  await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 16 } } });
+  await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 4 } } });
 });
 
 stage.test("an image is saved without its background", async () => {
-  const { page } = await stage.watch();
+  const { page } = await stage.sharedViewer();
   await settle(page, stage.server);
   const dialog = await openSave(page);
   await dialog.getByLabel("Transparent").check();
@@ -162,10 +166,12 @@ stage.test("an image is saved without its background", async () => {
   // Other formats have no alpha.
   const again = await openSave(page, { format: "jpeg" });
   assert.equal(await again.getByLabel("Transparent").isVisible(), false);
+  await page.keyboard.press("Escape");
+  await again.waitFor({ state: "hidden" });
 });
 
 stage.test("the copied image is in the clipboard", async () => {
-  const { page } = await stage.watch({ permissions });
+  const { page } = await stage.sharedViewer();
   await settle(page, stage.server);
   await chooseOutput(page, "Copy image");
   await page.locator(".toast", { hasText: "Image copied to the clipboard" }).waitFor();
@@ -210,7 +216,7 @@ async function playVideo(bytes) {
 }
 
 stage.test("a recording is a playable video with different frames", async () => {
-  const { page } = await stage.watch();
+  const { page } = await stage.sharedViewer();
   await stage.server.call("animation.play", { clip: "moving_objects_light" });
   const drawn = () =>
     page.evaluate(() => Object.values(window.seen.drawn).reduce((sum, count) => sum + count, 0));

@@ -21,7 +21,7 @@ const drag = [
 ];
 
 // Without inertia the view rests where the pointer does.
-const stage = new Stage({ view: { reducedMotion: "reduce" } });
+const stage = new Stage({ resolution: "half", view: { reducedMotion: "reduce" } });
 
 const seen = (page) => page.evaluate(() => window.seen);
 const view = async (page, name) => thumbnail(page, await viewScreenshot(page, name));

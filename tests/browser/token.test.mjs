@@ -1,4 +1,4 @@
-// The page of a server that needs a token, for those who have none or a wrong one.
+// The pages of a server that needs a token, for those who have none or a wrong one.
 
 import assert from "node:assert/strict";
 import { seriousFindings } from "./harness/axe.mjs";
@@ -35,4 +35,13 @@ stage.test("without a token the page asks for one, and says when it is wrong", a
   assert.equal(new URL(page.url()).search, "", "the token is left in the address");
   // The view of the link has survived.
   await eventually(async () => (await page.title()).startsWith("mirror"), "the linked view");
+});
+
+stage.test("without a token the API page asks for one and comes back", async () => {
+  const url = new URL("api", stage.server.url).href;
+  const { page } = await stage.open({ url, expectErrors: true });
+  await page.getByLabel("Access token").fill(token);
+  await page.getByRole("button", { name: "Continue" }).click();
+  await page.getByRole("heading", { name: "camera.orbit" }).waitFor();
+  assert.equal(page.url(), url, "the token is left in the address");
 });

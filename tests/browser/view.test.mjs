@@ -14,7 +14,7 @@ import {
 } from "./harness/browser.mjs";
 import { Stage } from "./harness/stage.mjs";
 
-const stage = new Stage();
+const stage = new Stage({ resolution: "half" });
 
 stage.test("a bookmark is shared by the viewers of a session and moves the camera in a transition", async () => {
   const { page } = await stage.watch();
@@ -45,7 +45,7 @@ stage.test("a bookmark is shared by the viewers of a session and moves the camer
 });
 
 stage.test("W flies forward, D to the right, and dragging during flight looks around", async () => {
-  const { page } = await stage.watch();
+  const { page } = await stage.sharedViewer();
   await setCamera(page, stage.server, { eye: [0, 1, 6], target: [0, 1, 0] });
   await page.locator("#view").focus();
   await page.keyboard.press("w", { delay: 200 });
@@ -92,7 +92,7 @@ stage.test("a drag orbits around the point that was clicked", async () => {
 });
 
 stage.test("a fit leaves the scene beside the panel", async () => {
-  const { page } = await stage.watch();
+  const { page } = await stage.sharedViewer();
   await page.locator("#view").focus();
   await page.keyboard.press("f");
   const beside = await staticCamera(page, stage.server);
@@ -103,10 +103,11 @@ stage.test("a fit leaves the scene beside the panel", async () => {
     const whole = await stage.server.call("camera.get");
     return distance(whole.target, beside.target) > 0.1;
   }, "a fit into the whole view");
+  await page.keyboard.press("h");
 });
 
 stage.test("the wheel zooms towards the pointer", async () => {
-  const { page } = await stage.watch();
+  const { page } = await stage.sharedViewer();
   await setCamera(page, stage.server, { eye: [0, 1, 6], target: [0, 1, 0] });
   await page.mouse.move(120, 270);
   await page.mouse.wheel(0, -240);
@@ -115,7 +116,7 @@ stage.test("the wheel zooms towards the pointer", async () => {
 });
 
 stage.test("the wheel comes close to a surface and never passes it", async () => {
-  const { page } = await stage.watch();
+  const { page } = await stage.sharedViewer();
   await setCamera(page, stage.server, { eye: [0, 1, 6], target: [0, 0.6, 0] });
   const { x, y, width, height } = await page.locator("#view").boundingBox();
   const surface = (await stage.server.call("scene.pick", { x: 0.5, y: 0.5 })).position;
@@ -136,7 +137,7 @@ stage.test("the wheel comes close to a surface and never passes it", async () =>
 });
 
 stage.test("a clip plays, pauses and seeks", async () => {
-  const { page } = await stage.watch();
+  const { page } = await stage.sharedViewer();
   await page.locator("#transport select[name=clip]").selectOption("moving_objects_light");
   await eventually(
     async () => (await stage.server.call("animation.list")).playing,
@@ -165,7 +166,7 @@ stage.test("a clip plays, pauses and seeks", async () => {
 });
 
 stage.test("playback changes of another viewer are shown without polling", async () => {
-  const { page } = await stage.watch();
+  const { page } = await stage.sharedViewer();
   const call = (method, params) => stage.server.call(method, params);
   const transport = page.locator("#transport");
   await transport.locator("select[name=clip]").waitFor();

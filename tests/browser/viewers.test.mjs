@@ -16,7 +16,7 @@ import {
 import { difference, statistics, thumbnail } from "./harness/images.mjs";
 import { Stage } from "./harness/stage.mjs";
 
-const stage = new Stage();
+const stage = new Stage({ samples: 16, resolution: "half" });
 
 async function viewImage(page, name) {
   return thumbnail(page, await viewScreenshot(page, name));

@@ -15,11 +15,12 @@ function numbers() {
   let now = 0;
   const values: Record<string, number> = {};
   const history = new UndoHistory(() => now);
-  const change = (name: string, value: number, ofScene = false): void => {
+  const change = (name: string, value: number, ofScene = false, movement?: number): void => {
     const before = values[name] ?? 0;
     const set = (to: number) => () => void (values[name] = to);
     set(value)();
-    history.add({ label: name, key: name, ofScene, undo: set(before), redo: set(value) });
+    const [undo, redo] = [set(before), set(value)];
+    history.add({ label: name, key: name, ofScene, movement, undo, redo });
   };
   return { values, history, change, wait: (ms: number) => (now += ms) };
 }
@@ -44,6 +45,23 @@ test("a drag is one step, another value is another, and steps have names", () =>
   assert.deepEqual(history.next.value, { undo: "exposure", redo: null });
   history.undo();
   assert.equal(values.exposure, 3);
+});
+
+test("a movement is one step on a slow page, too, and the next one is another", () => {
+  const { values, history, change, wait } = numbers();
+  for (const value of [1, 2, 3]) {
+    change("camera", value, true, 0);
+    wait(2000);
+  }
+  change("camera", 7, true, 1);
+  history.undo();
+  assert.equal(values.camera, 3);
+  history.undo();
+  assert.equal(values.camera, 0);
+  history.redo();
+  change("camera", 4, true, 0);
+  history.undo();
+  assert.equal(values.camera, 3, "what was redone is complete");
 });
 
 test("steps in a scene are void when another viewer loads another scene", () => {

@@ -42,6 +42,10 @@ Clock::duration RenderDevices::still_for() const {
   return shortest;
 }
 
+bool RenderDevices::are_occupied() const {
+  return std::ranges::any_of(loops_, [](const auto& loop) { return loop->is_occupied(); });
+}
+
 bool RenderDevices::images_move() const {
   return std::ranges::any_of(loops_, [](const auto& loop) { return loop->images_move(); });
 }

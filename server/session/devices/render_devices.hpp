@@ -33,6 +33,8 @@ class RenderDevices {
   bool images_move() const;
   /// Since an image of any device moved.
   Clock::duration still_for() const;
+  /// Whether any device is; see RenderLoop::is_occupied.
+  bool are_occupied() const;
   /// Called once, after the first frame.
   void on_first_frame(std::function<void()> callback);
   RenderTotals totals() const { return measurements_.totals(); }

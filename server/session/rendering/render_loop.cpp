@@ -162,7 +162,9 @@ void RenderLoop::advance_or_wait() {
   if (advance_next(views) || finish_frame() || !device_ready_) return;
   auto due = next_due(views);
   if (held_back_until_) due = due ? std::min(*due, *held_back_until_) : *held_back_until_;
+  occupied_ = std::ranges::any_of(views, [](const auto& view) { return view->plays(); });
   wake_->wait_until(due);
+  occupied_ = true;
 }
 
 RenderLoop::Views RenderLoop::open_views() {
@@ -224,6 +226,7 @@ bool RenderLoop::draw_in_turn(const std::shared_ptr<SessionView>& view) {
     held_back_until_ = held_back_until_ ? std::min(*held_back_until_, *until) : *until;
     return false;
   }
+  if (view->next_frame_moves()) moved_at_ = start;
   const SessionView::Work work = advance(*view, true);
   // The device goes on with this frame while that of another view is shown.
   finish_frame();

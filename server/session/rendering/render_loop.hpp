@@ -67,6 +67,8 @@ class RenderLoop {
   bool images_move() const { return still_for() < motion_end_delay; }
   /// Since the image of a session has moved last.
   Clock::duration still_for() const { return Clock::now() - moved_at_.load(); }
+  /// Whether a frame is rendered, or one of a clip that plays waits for its viewers.
+  bool is_occupied() const { return occupied_; }
 
  private:
   /// From one change to the next of a camera that a viewer moves.
@@ -112,6 +114,7 @@ class RenderLoop {
   std::atomic<bool> loss_reported_ = false;
   std::atomic<std::uint64_t> device_losses_ = 0;
   std::atomic<Clock::time_point> moved_at_ = Clock::time_point();
+  std::atomic<bool> occupied_ = false;
   RetryBackoff retry_backoff_;  // of the render thread, like the next ones
   Clock::time_point retry_at_;
   std::optional<Clock::time_point> held_back_until_;

@@ -52,6 +52,10 @@ class SessionView {
   bool refines() const;
   /// Whether its frames of a moving view take turns with those of other sessions.
   bool moves() const;
+  /// Whether the next frame is one of a moving view.
+  bool next_frame_moves() const;
+  /// Whether viewers watch a clip that plays: the next frame comes when they have taken this one.
+  bool plays() const;
   /// How many sessions' do.
   void share_device(std::size_t moving_sessions) { moving_sessions_ = moving_sessions; }
   /// What `advance` did: nothing, something short, a frame, or no frame although one is due.

@@ -97,6 +97,14 @@ void SessionView::adopt_pose() {
   renderer_->set_camera(scene::camera_at(*state_.scene, state_.camera, pose));
 }
 
+bool SessionView::next_frame_moves() const {
+  return next_view_state(view_inputs()) == ViewState::moving;
+}
+
+bool SessionView::plays() const {
+  return state_.animation.playing && watched() && !session_->timeline().in_lockstep();
+}
+
 void SessionView::adopt_draw_scale() {
   set_draw_scale(draw_scale({.now = Clock::now(),
                              .camera_moved_at = camera_moved_at_,

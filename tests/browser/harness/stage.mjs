@@ -11,15 +11,16 @@ after(() => browser?.close());
 
 export class Stage {
   /**
-   * The server loads `scene`, unless it is null, and has `serverArguments`; a frame is converged after `samples`, or
-   * the server's default if null. Pages ask for frames of this `resolution`, half of their own unless
-   * given, which take less time to render. `view` has options of every page's context, `variables` some
-   * of the server's environment. `prepare` runs once with the page that tests share.
+   * The server loads `scene`, unless it is null, and has `serverArguments`; a frame is converged after
+   * `samples`, or the server's default if null. Pages ask for frames of this `resolution`, a third of
+   * their own unless given: few pixels and samples take little time, which is enough where a test
+   * does not look at the image. `view` has options of every page's context, `variables` some of the
+   * server's environment. `prepare` runs once with the page that tests share.
    */
   constructor({
     scene = "shadow_objects",
-    samples = 16,
-    resolution = "half",
+    samples = 4,
+    resolution = "third",
     serverArguments = [],
     view = {},
     variables = {},

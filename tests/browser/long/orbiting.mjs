@@ -11,6 +11,8 @@ import { Stage } from "../harness/stage.mjs";
 const orbitMs = 8000;
 const stage = new Stage({
   scene: "glossy_sponza_1",
+  samples: 16,
+  resolution: "half",
   view: { viewport: { width: 1280, height: 720 } },
 });
 

@@ -26,6 +26,8 @@ const everythingOff = {
 };
 
 const stage = new Stage({
+  samples: 16,
+  resolution: "half",
   view: { viewport: { width: 1280, height: 720 } },
 });
 

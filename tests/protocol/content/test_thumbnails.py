@@ -1,5 +1,6 @@
 """Thumbnails of scenes: rendered while the server is idle, kept on disk."""
 
+import asyncio
 import os
 import shutil
 import tempfile
@@ -8,10 +9,12 @@ import unittest
 from pathlib import Path
 
 from harness.images import decode_jpeg
+from harness.models import Model
 from harness.server import TIME_FACTOR, Server
+from harness.viewer import Viewer
 
 
-class Thumbnails(unittest.TestCase):
+class Thumbnails(unittest.IsolatedAsyncioTestCase):
     def setUp(self):
         self.folder = Path(tempfile.mkdtemp())
         self.addCleanup(shutil.rmtree, self.folder)
@@ -64,6 +67,24 @@ class Thumbnails(unittest.TestCase):
         self.assertEqual(self.get(server, "missing")[0], 404)
         self.assertEqual(self.wait_for(server, "broken")[0], 400)
         self.assertEqual(self.wait_for(server, "first")[0], 200)
+
+    async def test_they_wait_for_the_end_of_a_clip_whose_viewer_is_slow(self):
+        model = Model(os.path.join(os.environ["HELIOGRAPH_SCENES"], "furnace.glb"))
+        model.add_clip("hop", model.node("diffuse"), [0.0, 1.0], [[0, 0.6, 0], [0.5, 1.0, 0]])
+        model.save(os.path.join(self.scenes, "first.glb"))
+        server = self.start()
+        async with Viewer(server, acknowledge=False) as viewer:
+            await viewer.next_frame()
+            await viewer.call("animation.play", {"clip": "hop"})
+            await viewer.frame_where(lambda frame: not frame.final)
+            deadline = time.monotonic() + 4
+            while time.monotonic() < deadline:
+                status, _ = await asyncio.to_thread(self.get, server, "more/second")
+                self.assertEqual(status, 202, "rendered while a clip played")
+                await asyncio.sleep(0.2)
+            await viewer.call("animation.pause")
+            status, _ = await asyncio.to_thread(self.wait_for, server, "more/second")
+            self.assertEqual(status, 200)
 
 
 if __name__ == "__main__":

@@ -62,7 +62,8 @@ function main(): void {
   const navigation = new Navigation(canvas, {
     camera: () => (viewer.hello && viewer.membership.mayMove ? viewer.camera.value : null),
     sceneSize: () => viewer.sceneSize(),
-    moved: (camera, recorded) => viewer.cameraMoves.moveTo(camera, recorded),
+    moved: (camera, recorded, movement) =>
+      viewer.cameraMoves.moveTo(camera, recorded, movement),
     fit: () => fit(),
     surfaceAt: (x, y) => viewer.queries.surfaceAt(x, y),
     focus: (x, y) => void focusAt(x, y),

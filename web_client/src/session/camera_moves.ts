@@ -40,9 +40,9 @@ export class CameraMoves {
     this.inputSeq = 0;
   }
 
-  /** Sends an absolute pose. Call at most once per animation frame. */
-  moveTo(camera: CameraPose, recorded = true): void {
-    if (recorded) this.remember(camera);
+  /** Sends an absolute pose of a movement. Call at most once per animation frame. */
+  moveTo(camera: CameraPose, recorded = true, movement?: number): void {
+    if (recorded) this.remember(camera, movement);
     this.host.camera.set(camera);
     const seq = this.nextInput();
     this.host.moved(camera, seq);
@@ -80,12 +80,13 @@ export class CameraMoves {
     return this.inputSeq;
   }
 
-  private remember(camera: CameraPose): void {
+  private remember(camera: CameraPose, movement?: number): void {
     const before = this.host.camera.value;
     if (!before || !this.host.records()) return;
     this.host.history.add({
       label: "camera",
       key: "camera",
+      movement,
       ofScene: true,
       undo: () => this.returnTo(before),
       redo: () => this.returnTo(camera),

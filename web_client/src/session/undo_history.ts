@@ -8,6 +8,8 @@ interface Step {
   label: string;
   /** Steps in quick succession with the same key are one. */
   key: string;
+  /** So are those of one movement, however slowly they come. */
+  movement?: number | undefined;
   /** It concerns the content of a scene and is void when another viewer loads another one. */
   ofScene?: boolean;
   undo(): void;
@@ -38,9 +40,11 @@ export class UndoHistory {
     const at = this.clock();
     const last = this.done[this.done.length - 1];
     this.undone = [];
-    if (last && last.key === step.key && at - last.at < mergeWithinMs) {
+    const continues = step.movement !== undefined && step.movement === last?.movement;
+    if (last && last.key === step.key && (continues || at - last.at < mergeWithinMs)) {
       last.redo = step.redo;
       last.at = at;
+      last.movement = step.movement;
     } else {
       this.done.push({ ...step, at });
       if (this.done.length > maxSteps) this.done.shift();
@@ -61,7 +65,7 @@ export class UndoHistory {
   redo(): string | null {
     const step = this.undone.pop();
     if (!step) return null;
-    this.done.push({ ...step, at: -Infinity });
+    this.done.push({ ...step, at: -Infinity, movement: undefined });
     step.redo();
     this.announce();
     return step.label;

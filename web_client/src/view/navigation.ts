@@ -21,7 +21,7 @@ interface NavigationHost {
   /** Largest extent of the scene in metres; it limits the distance to the target. */
   sceneSize(): number;
   /** Takes the new pose, once per animation frame; `recorded` as a step of the history. */
-  moved(camera: CameraPose, recorded: boolean): void;
+  moved(camera: CameraPose, recorded: boolean, movement: number): void;
   fit(): void;
   /** The surface at a point, in fractions of the view's width and height; null where none is. */
   surfaceAt(x: number, y: number): Promise<Vector3 | null>;
@@ -88,6 +88,8 @@ export class Navigation {
   private shiftHeld = false;
   /** The movement in progress is no step of the history. */
   private unrecorded = false;
+  /** Number of the movement in progress, or the next one. */
+  private movement = 0;
   private transition: { from: CameraPose; to: CameraPose; startedAt: number } | null = null;
 
   constructor(surface: HTMLElement, host: NavigationHost) {
@@ -336,8 +338,9 @@ export class Navigation {
     if (this.pendingPose) {
       const camera = this.pendingPose;
       this.pendingPose = null;
-      this.host.moved(camera, !this.unrecorded);
+      this.host.moved(camera, !this.unrecorded, this.movement);
     }
+    if (!moving && this.heldKeys.size === 0 && this.pointers.size === 0) this.movement += 1;
     if (moving || this.heldKeys.size > 0) {
       cancelAnimationFrame(this.frameRequest);
       this.lastFrameAt = now;
