@@ -28,7 +28,7 @@ export class Stage {
   } = {}) {
     this.serverArguments = [...serverArguments, ...(scene ? ["--scene", scene] : [])];
     /** Values of settings that are not the server's defaults. */
-    this.settings = samples ? { "accumulation.max_samples": samples, "reference.samples": 4 } : {};
+    this.settings = samples ? { "accumulation.max_samples": samples, "reference.samples": 2 } : {};
     for (const [path, value] of Object.entries(this.settings)) {
       this.serverArguments.push("--set", `${path}=${value}`);
     }
