@@ -1,15 +1,16 @@
 #include "render/resources/texture_heap.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 #include <string_view>
 #include <utility>
 
+#include "render/api/kept_textures.hpp"
+#include "scene/image/mipmaps.hpp"
+
 namespace heliograph::render {
 namespace {
 
-constexpr std::uint32_t largest_side = 1024;
 constexpr VkBufferUsageFlags texel_usage = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
 
 std::uint32_t side(std::uint32_t size, std::uint32_t level) {
@@ -24,21 +25,11 @@ std::uint64_t texels(const scene::Image& image, std::uint32_t first, std::uint32
   return sum;
 }
 
-/// The first level no side of which is longer than `longest`; the last where none is short enough.
-std::uint32_t first_level(const scene::Image& image, std::uint32_t longest) {
-  std::uint32_t level = 0;
-  while (level + 1 < image.levels &&
-         std::max(side(image.width, level), side(image.height, level)) > longest) {
-    ++level;
-  }
-  return level;
-}
-
 std::uint32_t longest_side_that_fits(const scene::Scene& scene, std::uint64_t most_texels) {
-  for (std::uint32_t longest = largest_side; longest > 1; longest /= 2) {
+  for (std::uint32_t longest = longest_heap_side; longest > 1; longest /= 2) {
     std::uint64_t sum = 0;
     for (const scene::Image& image : scene.images) {
-      sum += texels(image, first_level(image, longest), image.levels);
+      sum += texels(image, scene::first_level_within(image, longest), image.levels);
     }
     if (sum <= most_texels) return longest;
   }
@@ -55,9 +46,11 @@ std::uint32_t flags(const scene::Image& image, const scene::Sampler& sampler) {
          bit(sampler.mip_filter == scene::Filter::nearest, shared::texture_levels_nearest);
 }
 
+/// The heap keeps the last levels.
 void copy_texels(const HeapPlan::Slot& slot, std::span<const std::uint8_t> pixels,
                  std::uint32_t* heap) {
-  std::memcpy(heap + slot.first, &pixels[slot.skipped * 4], slot.kept * 4);
+  const auto kept = pixels.last(slot.kept * 4);
+  std::ranges::copy(kept, reinterpret_cast<std::uint8_t*>(heap + slot.first));
 }
 
 /// Finds images that have the same texels as one before, by their encoded files.
@@ -81,7 +74,7 @@ HeapPlan plan_heap(const scene::Scene& scene, std::uint64_t most_texels) {
   HeapPlan plan;
   KnownImages known;
   for (const scene::Image& image : scene.images) {
-    const std::uint32_t level = first_level(image, longest);
+    const std::uint32_t level = scene::first_level_within(image, longest);
     const std::size_t first = known.first_like(image, plan.slots.size());
     if (first < plan.slots.size()) {
       plan.slots.push_back({plan.slots[first].skipped, 0, plan.slots[first].first});
@@ -93,7 +86,7 @@ HeapPlan plan_heap(const scene::Scene& scene, std::uint64_t most_texels) {
   }
   for (const scene::Texture& texture : scene.textures) {
     const scene::Image& image = scene.images[texture.image];
-    const std::uint32_t level = first_level(image, longest);
+    const std::uint32_t level = scene::first_level_within(image, longest);
     shared::HeapTexture entry{};
     entry.first_texel = static_cast<std::uint32_t>(plan.slots[texture.image].first);
     entry.width = side(image.width, level);
@@ -119,7 +112,9 @@ PackedTextures pack_textures(const scene::Scene& scene, std::uint64_t most_texel
 }
 
 TextureHeapWriter::TextureHeapWriter(const gpu::Device& device, const scene::Scene& scene)
-    : device_(device), plan_(plan_heap(scene, device.limits().maxTexelBufferElements)) {
+    : device_(device),
+      images_(scene.images),
+      plan_(plan_heap(scene, device.limits().maxTexelBufferElements)) {
   if (device.is_cpu()) {
     texels_ =
         gpu::Buffer(device, "texture heap", 4 * plan_.texels, texel_usage, gpu::Memory::device);

@@ -55,9 +55,10 @@ void Container::read_chunks() {
   if (text_.empty()) throw ImportError("GLB does not begin with a JSON chunk");
 }
 
-std::vector<std::uint8_t> Container::read_binary(std::uint64_t bytes) const {
+std::vector<std::uint8_t> Container::read_binary(std::uint64_t bytes,
+                                                 const std::stop_token& stop) const {
   std::vector<std::uint8_t> result(bytes);
-  file_.read(binary_offset_, result);
+  file_.read(binary_offset_, result, stop);
   return result;
 }
 

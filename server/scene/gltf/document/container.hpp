@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,8 @@ class Container {
   std::string take_text() { return std::move(text_); }
   bool has_binary() const { return binary_bytes_ != 0; }
   std::uint64_t binary_bytes() const { return binary_bytes_; }
-  /// The first `bytes` of the binary chunk, which has as many. @throws ImportError
-  std::vector<std::uint8_t> read_binary(std::uint64_t bytes) const;
+  /// The first `bytes` of the binary chunk, which has as many. @throws ImportError, LoadCancelled
+  std::vector<std::uint8_t> read_binary(std::uint64_t bytes, const std::stop_token& stop) const;
 
  private:
   void read_chunks();

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "scene/cancellation.hpp"
 #include "scene/gltf/document/extension_value.hpp"
 #include "scene/gltf/document/model_parser.hpp"
 #include "scene/gltf/document/uri.hpp"
@@ -13,16 +14,18 @@
 namespace heliograph::scene {
 
 GltfFile::GltfFile(const std::filesystem::path& path, const ImportLimits& limits,
-                   Warnings& warnings)
+                   Warnings& warnings, const std::stop_token& stop)
     : GltfFile(examine_file(path), ConfinedFolder(path.parent_path(), limits.file_bytes),
-               RegularFile(path, limits.file_bytes, "the file"), limits, warnings) {}
+               RegularFile(path, limits.file_bytes, "the file"), limits, warnings, stop) {}
 
-GltfFile::GltfFile(RegularFile file, const ImportLimits& limits, Warnings& warnings)
-    : GltfFile({}, {}, std::move(file), limits, warnings) {}
+GltfFile::GltfFile(RegularFile file, const ImportLimits& limits, Warnings& warnings,
+                   const std::stop_token& stop)
+    : GltfFile({}, {}, std::move(file), limits, warnings, stop) {}
 
 GltfFile::GltfFile(SourceFile self, ConfinedFolder folder, RegularFile file,
-                   const ImportLimits& limits, Warnings& warnings)
-    : self_(std::move(self)),
+                   const ImportLimits& limits, Warnings& warnings, const std::stop_token& stop)
+    : stop_(stop),
+      self_(std::move(self)),
       folder_(std::move(folder)),
       container_(std::move(file)),
       document_(read_document(limits, warnings)),
@@ -39,9 +42,10 @@ GltfFile::GltfFile(SourceFile self, ConfinedFolder folder, RegularFile file,
 }
 
 CheckedDocument GltfFile::read_document(const ImportLimits& limits, Warnings& warnings) {
-  nlohmann::json json = parse_json(container_.take_text(), limits.json_depth, limits.json_values);
+  nlohmann::json json =
+      parse_json(container_.take_text(), limits.json_depth, limits.json_values, stop_);
   check_versions(json, warnings);
-  return check_document(json, limits, warnings);
+  return check_document(json, limits, warnings, stop_);
 }
 
 std::vector<SourceFile> GltfFile::sources() const {
@@ -54,7 +58,7 @@ std::vector<std::uint8_t> GltfFile::resource(const std::string& place) {
   std::string& uri = document_.uris.at(place);
   try {
     auto bytes = decode_data_uri(uri);
-    if (!bytes) return folder_.read(decode_file_uri(uri));
+    if (!bytes) return folder_.read(decode_file_uri(uri), stop_);
     uri = {};
     return std::move(*bytes);
   } catch (const MissingFile& error) {
@@ -83,7 +87,7 @@ std::vector<std::uint8_t> GltfFile::read_buffer(std::size_t index) {
     refuse_at(place, "has neither a uri nor a GLB binary chunk");
   }
   check_length(container_.binary_bytes());
-  return container_.read_binary(length);
+  return container_.read_binary(length, stop_);
 }
 
 void GltfFile::read_views(const ImportLimits& limits) {
@@ -95,6 +99,7 @@ void GltfFile::read_views(const ImportLimits& limits) {
 }
 
 BufferView GltfFile::read_view(std::size_t index, std::uint64_t& unpacked_budget) {
+  throw_if_cancelled(stop_);
   const tinygltf::BufferView& view = model_.bufferViews[index];
   const auto stride = static_cast<std::uint32_t>(view.byteStride);
   const std::string place = item_path("", "bufferViews", index);

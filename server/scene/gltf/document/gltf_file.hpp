@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -27,10 +28,12 @@ struct BufferView {
 /// narrows numbers and replaces values of a wrong type.
 class GltfFile {
  public:
-  /// @throws ImportError
-  GltfFile(const std::filesystem::path& path, const ImportLimits& limits, Warnings& warnings);
-  /// A file that is alone: others that it refers to are missing. @throws ImportError
-  GltfFile(RegularFile file, const ImportLimits& limits, Warnings& warnings);
+  /// @throws ImportError, LoadCancelled
+  GltfFile(const std::filesystem::path& path, const ImportLimits& limits, Warnings& warnings,
+           const std::stop_token& stop);
+  /// A file that is alone: others that it refers to are missing. @throws ImportError, LoadCancelled
+  GltfFile(RegularFile file, const ImportLimits& limits, Warnings& warnings,
+           const std::stop_token& stop);
   GltfFile(const GltfFile&) = delete;
   GltfFile& operator=(const GltfFile&) = delete;
 
@@ -45,12 +48,13 @@ class GltfFile {
 
  private:
   GltfFile(SourceFile self, ConfinedFolder folder, RegularFile file, const ImportLimits& limits,
-           Warnings& warnings);
+           Warnings& warnings, const std::stop_token& stop);
   CheckedDocument read_document(const ImportLimits& limits, Warnings& warnings);
   std::vector<std::uint8_t> read_buffer(std::size_t index);
   void read_views(const ImportLimits& limits);
   BufferView read_view(std::size_t index, std::uint64_t& unpacked_budget);
 
+  std::stop_token stop_;
   SourceFile self_;
   ConfinedFolder folder_;
   Container container_;

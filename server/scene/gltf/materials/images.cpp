@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "scene/cancellation.hpp"
 #include "scene/first_failure.hpp"
 #include "scene/gltf/document/extension_value.hpp"
 #include "scene/image/image_decoder.hpp"
@@ -82,9 +83,10 @@ std::vector<SharedFile> share_files(std::span<const ImageSource> sources,
 }
 
 /// Fills all levels of an image whose size is known.
-void decode_levels(Image& image) {
+void decode_levels(Image& image, const std::stop_token& stop) {
   image.pixels.resize(mip_chain_bytes(image.width, image.height));
   decode_image(*image.file, {image.width, image.height}, image.pixels);
+  throw_if_cancelled(stop);
   fill_mip_chain(image);
 }
 
@@ -114,7 +116,7 @@ void convert_levels(std::span<const ImageSource> sources, const ImageConversion&
 }
 
 Image decode(std::span<const ImageSource> sources, const ImageUse& use,
-             std::span<const SharedFile> files, ImageSize size) {
+             std::span<const SharedFile> files, ImageSize size, const std::stop_token& stop) {
   Image image;
   image.name = sources[use.source].name;
   image.width = size.width;
@@ -125,7 +127,7 @@ Image decode(std::span<const ImageSource> sources, const ImageUse& use,
     convert_levels(sources, *use.conversion, image);
   } else {
     image.file = files[use.source];
-    decode_levels(image);
+    decode_levels(image, stop);
   }
   return image;
 }
@@ -149,9 +151,11 @@ std::vector<std::uint32_t> ImageUse::sources() const {
   return result;
 }
 
-std::vector<ImageSource> read_image_sources(GltfFile& file, const ImportLimits& limits) {
+std::vector<ImageSource> read_image_sources(GltfFile& file, const ImportLimits& limits,
+                                            const std::stop_token& stop) {
   std::vector<ImageSource> result;
   for (const tinygltf::Image& image : file.model().images) {
+    throw_if_cancelled(stop);
     ImageSource& source = result.emplace_back();
     source.path = item_path("", "images", result.size() - 1);
     source.name = image.name;
@@ -171,7 +175,8 @@ std::vector<ImageSource> read_image_sources(GltfFile& file, const ImportLimits& 
 }
 
 DecodedImages decode_images(std::span<const ImageSource> sources, std::span<const ImageUse> uses,
-                            const ImportLimits& limits, const std::function<void()>& decoded) {
+                            const KeptLevels& kept, const ImportLimits& limits,
+                            const std::stop_token& stop, const std::function<void()>& decoded) {
   DecodedImages result;
   result.images.resize(uses.size());
   result.problems.resize(uses.size());
@@ -183,10 +188,12 @@ DecodedImages decode_images(std::span<const ImageSource> sources, std::span<cons
       const std::uint32_t source = uses[i].source;
       std::string& problem = result.problems[i];
       if (problem.empty()) {
-        problem = try_image(sources[source], limits,
-                            [&] { result.images[i] = decode(sources, uses[i], files, sizes[i]); });
+        problem = try_image(sources[source], limits, [&] {
+          result.images[i] = decode(sources, uses[i], files, sizes[i], stop);
+        });
       }
       if (!problem.empty()) result.images[i] = white_texel(sources[source], uses[i].srgb);
+      if (!kept.whole[i]) drop_large_levels(result.images[i], kept.longest_side);
       decoded();
     });
   });
@@ -194,10 +201,22 @@ DecodedImages decode_images(std::span<const ImageSource> sources, std::span<cons
   return result;
 }
 
-ImagePixels::ImagePixels(const Image& image) : pixels_(image.pixels) {
-  if (!image.pixels.empty() || !image.file) return;
+void drop_large_levels(Image& image, std::uint32_t longest_side) {
+  if (!image.file || image.pixels.empty()) return;
+  const std::uint32_t before = first_level_in(image, image.pixels.size());
+  const std::uint32_t first = first_level_within(image, longest_side);
+  if (first <= before) return;
+  const auto kept =
+      std::span(image.pixels).subspan(level_offset(image, first) - level_offset(image, before));
+  image.pixels = std::vector<std::uint8_t>(kept.begin(), kept.end());
+}
+
+ImagePixels::ImagePixels(const Image& image, std::uint32_t first) : pixels_(image.pixels) {
+  const bool enough = !pixels_.empty() && first_level_in(image, pixels_.size()) <= first;
+  if (enough || !image.file) return;
   Image again = image;
-  decode_levels(again);
+  again.pixels = {};
+  decode_levels(again, {});
   decoded_ = std::move(again.pixels);
   pixels_ = decoded_;
 }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "scene/byte_budget.hpp"
+#include "scene/cancellation.hpp"
 #include "scene/gltf/schema/document_text.hpp"
 #include "scene/gltf/schema/place.hpp"
 #include "scene/gltf/schema/schema.hpp"
@@ -47,8 +48,9 @@ std::string plain(double value) {
 
 class Checker {
  public:
-  Checker(json& document, const ImportLimits& limits, Warnings& warnings)
-      : document_(document), budget_(limits.scene_bytes), warnings_(warnings) {}
+  Checker(json& document, const ImportLimits& limits, Warnings& warnings,
+          const std::stop_token& stop)
+      : document_(document), budget_(limits.scene_bytes), warnings_(warnings), stop_(stop) {}
 
   CheckedDocument check() {
     for (const TableSource& source : table_sources()) {
@@ -229,6 +231,7 @@ class Checker {
     if (value.size() < member.least_items) fail_at(&place, "must not be empty");
     text_.open('[');
     for (std::size_t i = 0; i < value.size(); ++i) {
+      throw_if_cancelled(stop_, i);
       const Place at{place.owner, place.member, i};
       item(value[i], member, of_numbers || member.kind == Kind::indices ? place : at, reason);
     }
@@ -347,6 +350,7 @@ class Checker {
   json& document_;
   ByteBudget budget_;
   Warnings& warnings_;
+  const std::stop_token& stop_;
   CheckedDocument result_;
   DocumentText text_;
   std::array<std::size_t, static_cast<std::size_t>(Table::count)> counts_{};
@@ -357,8 +361,9 @@ class Checker {
 
 }  // namespace
 
-CheckedDocument check_document(json& document, const ImportLimits& limits, Warnings& warnings) {
-  return Checker(document, limits, warnings).check();
+CheckedDocument check_document(json& document, const ImportLimits& limits, Warnings& warnings,
+                               const std::stop_token& stop) {
+  return Checker(document, limits, warnings, stop).check();
 }
 
 }  // namespace heliograph::scene
