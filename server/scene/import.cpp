@@ -15,7 +15,6 @@
 
 #include "scene/animation/deform.hpp"
 #include "scene/byte_budget.hpp"
-#include "scene/cancellation.hpp"
 #include "scene/first_failure.hpp"
 #include "scene/gltf/document/accessors.hpp"
 #include "scene/gltf/document/gltf_file.hpp"
@@ -34,6 +33,7 @@
 #include "scene/gltf/nodes/cameras.hpp"
 #include "scene/gltf/nodes/lights.hpp"
 #include "scene/gltf/nodes/nodes.hpp"
+#include "scene/import_error.hpp"
 #include "scene/warnings.hpp"
 
 namespace heliograph::scene {

@@ -5,7 +5,6 @@
 #include <stop_token>
 #include <string_view>
 
-#include "scene/cancellation.hpp"
 #include "scene/image/image_size.hpp"
 #include "scene/import_error.hpp"
 #include "scene/import_limits.hpp"

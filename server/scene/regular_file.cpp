@@ -8,7 +8,6 @@
 #include <cerrno>
 #include <utility>
 
-#include "scene/cancellation.hpp"
 #include "scene/import_error.hpp"
 
 namespace heliograph::scene {

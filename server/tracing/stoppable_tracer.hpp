@@ -12,7 +12,8 @@ class StoppableTracer : public RayTracer {
  public:
   /// Thread safe. @throws scene::LoadCancelled soon after `stop` was requested
   virtual std::shared_ptr<const AccelerationStructure> build_unless_stopped(
-      const scene::Scene& scene, const SceneBuffers& buffers, const std::stop_token& stop) const = 0;
+      const scene::Scene& scene, const SceneBuffers& buffers,
+      const std::stop_token& stop) const = 0;
 
   std::shared_ptr<const AccelerationStructure> build(const scene::Scene& scene,
                                                      const SceneBuffers& buffers) const override {

@@ -77,7 +77,7 @@ class SceneLoader {
     SceneKey key;
     CatalogueEntry entry;
     std::vector<Waiter> waiters;  // guarded by mutex_
-    std::stop_source stop;        // requested when nobody waits any more, and by stop()
+    std::stop_source stop;        // requested without waiters, and by stop()
     std::string
         stage;  // of the newest report; this and the rest are used by the loading thread only
     float fraction = 0.0f;

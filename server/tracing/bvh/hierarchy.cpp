@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "scene/cancellation.hpp"
+#include "scene/import_error.hpp"
 
 namespace heliograph::tracing {
 namespace {
@@ -119,7 +119,7 @@ struct BuildContext {
   const std::stop_token& stop;
 };
 
-bool goes_on(void* context, double) {
+bool hierarchy_goes_on(void* context, double) {
   return !static_cast<const BuildContext*>(context)->stop.stop_requested();
 }
 
@@ -181,7 +181,7 @@ Hierarchy build_hierarchy(RTCDevice device, std::span<const scene::Bounds> boxes
   RTCBuildArguments arguments = build_arguments(bvh.get(), primitives, leaf_size);
   BuildContext context{split, stop};
   arguments.userPtr = &context;
-  arguments.buildProgress = goes_on;
+  arguments.buildProgress = hierarchy_goes_on;
   if (split) allow_splits(arguments, primitives);
   const void* root = rtcBuildBVH(&arguments);
   if (stop.stop_requested()) {

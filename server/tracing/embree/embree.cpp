@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "scene/cancellation.hpp"
+#include "scene/import_error.hpp"
 
 namespace heliograph::tracing {
 namespace {
@@ -27,7 +27,7 @@ const char* error_name(RTCError error) {
   }
 }
 
-bool goes_on(void* stop, double) {
+bool commit_goes_on(void* stop, double) {
   return !static_cast<const std::stop_token*>(stop)->stop_requested();
 }
 
@@ -48,7 +48,7 @@ void check_embree(RTCDevice device, const char* action) {
 void commit_scene(RTCDevice device, RTCScene scene, const char* action,
                   const std::stop_token& stop) {
   std::stop_token asked = stop;
-  rtcSetSceneProgressMonitorFunction(scene, goes_on, &asked);
+  rtcSetSceneProgressMonitorFunction(scene, commit_goes_on, &asked);
   rtcCommitScene(scene);
   rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
   if (stop.stop_requested()) {

@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "scene/cancellation.hpp"
 #include "scene/first_failure.hpp"
+#include "scene/import_error.hpp"
 #include "tracing/bvh/bvh.hpp"
 #include "tracing/flat_instances.hpp"
 

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <utility>
 
-#include "scene/cancellation.hpp"
 #include "scene/gltf/document/extension_value.hpp"
+#include "scene/import_error.hpp"
 
 namespace heliograph::scene {
 namespace {

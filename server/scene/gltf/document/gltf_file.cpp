@@ -3,13 +3,13 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "scene/cancellation.hpp"
 #include "scene/gltf/document/extension_value.hpp"
 #include "scene/gltf/document/model_parser.hpp"
 #include "scene/gltf/document/uri.hpp"
 #include "scene/gltf/geometry/meshopt.hpp"
 #include "scene/gltf/schema/json_text.hpp"
 #include "scene/gltf/schema/versions.hpp"
+#include "scene/import_error.hpp"
 
 namespace heliograph::scene {
 

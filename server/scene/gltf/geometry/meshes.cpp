@@ -5,8 +5,8 @@
 #include <glm/packing.hpp>
 #include <numeric>
 
-#include "scene/cancellation.hpp"
 #include "scene/gltf/geometry/tangents.hpp"
+#include "scene/import_error.hpp"
 
 namespace heliograph::scene {
 namespace {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
-#include "scene/cancellation.hpp"
 #include "scene/gltf/document/extension_value.hpp"
 #include "scene/gltf/document/variants.hpp"
 #include "scene/gltf/geometry/draco.hpp"
+#include "scene/import_error.hpp"
 #include "scene/scene.hpp"
 
 namespace heliograph::scene {

@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-#include "scene/cancellation.hpp"
+#include "scene/import_error.hpp"
 
 namespace heliograph::scene {
 namespace {

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "scene/cancellation.hpp"
 #include "scene/first_failure.hpp"
 #include "scene/gltf/document/extension_value.hpp"
 #include "scene/image/image_decoder.hpp"
 #include "scene/image/mipmaps.hpp"
+#include "scene/import_error.hpp"
 #include "scene/quote.hpp"
 
 namespace heliograph::scene {

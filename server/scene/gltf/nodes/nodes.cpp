@@ -6,9 +6,9 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <utility>
 
-#include "scene/cancellation.hpp"
 #include "scene/gltf/document/extension_value.hpp"
 #include "scene/gltf/nodes/instancing.hpp"
+#include "scene/import_error.hpp"
 
 namespace heliograph::scene {
 namespace {

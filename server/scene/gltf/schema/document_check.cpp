@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "scene/byte_budget.hpp"
-#include "scene/cancellation.hpp"
 #include "scene/gltf/schema/document_text.hpp"
 #include "scene/gltf/schema/place.hpp"
 #include "scene/gltf/schema/schema.hpp"
+#include "scene/import_error.hpp"
 
 namespace heliograph::scene {
 namespace {

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "scene/cancellation.hpp"
 #include "scene/import_error.hpp"
 
 namespace heliograph::scene {
