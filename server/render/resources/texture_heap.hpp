@@ -35,7 +35,7 @@ class TextureHeapWriter {
  public:
   TextureHeapWriter(const gpu::Device& device, const scene::Scene& scene);
 
-  /// `pixels`: the levels of the image of that number; the largest may be missing.
+  /// `pixels` are all levels of the image of that number.
   void add(std::size_t image, std::span<const std::uint8_t> pixels);
   /// Once every image was added.
   TextureHeap finish();

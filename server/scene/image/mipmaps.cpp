@@ -143,7 +143,7 @@ std::uint64_t level_offset(const Image& image, std::uint32_t level) {
 }
 
 std::uint32_t first_level_in(const Image& image, std::uint64_t bytes) {
-  const std::uint64_t missing = mip_chain_bytes(image.width, image.height) - bytes;
+  const std::uint64_t missing = level_offset(image, image.levels) - bytes;
   std::uint32_t level = 0;
   while (level + 1 < image.levels && level_offset(image, level) < missing) ++level;
   return level;
