@@ -141,8 +141,9 @@ class Importer {
     const std::size_t parts = primitives.primitives.size() + textures.image_uses().size();
     PartsDone done([&](float fraction) { report("meshes and images", 0.1f + 0.85f * fraction); },
                    parts, stop_);
-    const KeptLevels kept{options_.longest_kept_side, images_with_alpha(textures)};
+    const KeptLevels kept{options_.kept_textures, images_with_alpha(textures)};
     std::vector<std::string> problems;
+    std::uint32_t kept_side = 0;
     FirstFailure failure;
     const auto guarded = [&](double& seconds, const auto& task) {
       const Stopwatch own;
@@ -159,6 +160,7 @@ class Importer {
             auto decoded = decode_images(images, textures.image_uses(), kept, limits_, stop_,
                                          [&] { done.add_one(); });
             scene_.images = std::move(decoded.images);
+            kept_side = decoded.kept_side;
             problems = std::move(decoded.problems);
           });
         });
@@ -167,7 +169,7 @@ class Importer {
     drop_missing_images(scene_, problems, warnings_);
     build_layers(scene_);
     build_alpha_heap(scene_);
-    for (Image& image : scene_.images) drop_large_levels(image, kept.longest_side);
+    for (Image& image : scene_.images) drop_large_levels(image, kept_side);
 
     scene_.clips = read_clips(model, accessors, nodes, budget_, warnings_);
     scene_.skins = read_skins(model, accessors, nodes, budget_);

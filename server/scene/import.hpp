@@ -5,7 +5,7 @@
 #include <stop_token>
 #include <string_view>
 
-#include "scene/image/image_size.hpp"
+#include "scene/image/mipmaps.hpp"
 #include "scene/import_error.hpp"
 #include "scene/import_limits.hpp"
 #include "scene/regular_file.hpp"
@@ -31,8 +31,8 @@ struct ImportOptions {
   ImportProgress progress;       // an exception of it cancels the import and is rethrown
   ImportTimes* times = nullptr;  // filled if given
   std::stop_token stop;  // asked by all threads: LoadCancelled is thrown soon after a request
-  /// Levels of images whose sides are longer are not kept, but for alpha masks.
-  std::uint32_t longest_kept_side = largest_image_side;
+  /// Other levels of images are not kept, but for alpha masks.
+  KeptTextures kept_textures;
 };
 
 /// Reads a .glb or .gltf file with everything it refers to; opens nothing outside `path`'s folder.

@@ -109,7 +109,7 @@ nlohmann::json load(render::Engine& engine, const std::filesystem::path& path,
   const std::clock_t spent_before = std::clock();
   scene::ImportTimes times;
   auto whole = std::make_unique<scene::Scene>(scene::import_gltf(
-      path, {}, {.times = &times, .longest_kept_side = render::longest_kept_side(engine)}));
+      path, {}, {.times = &times, .kept_textures = render::kept_textures(engine)}));
   const Clock::time_point imported = Clock::now();
   const std::uint64_t decoded = whole->bytes();
   const std::uint64_t import_peak = peak_bytes() - before;
@@ -178,7 +178,7 @@ nlohmann::json cancel(render::Engine& engine, const std::filesystem::path& path,
         scene::import_gltf(path, {},
                            {.progress = check,
                             .stop = stop.get_token(),
-                            .longest_kept_side = render::longest_kept_side(engine)}));
+                            .kept_textures = render::kept_textures(engine)}));
     engine.upload_and_free_pixels(std::move(scene), environment, check);
     result["complete_after"] = seconds_since(start);
   } catch (const scene::LoadCancelled&) {

@@ -2,6 +2,7 @@
 #include "render/api/devices.hpp"
 #include "render/api/kept_textures.hpp"
 #include "render/frame/engine_parts.hpp"
+#include "render/resources/heap_textures.hpp"
 #include "render/resources/scene_resources.hpp"
 #include "render/resources/tables/jpeg_tables.hpp"
 #include "shaders/embedded.hpp"
@@ -213,8 +214,9 @@ const std::shared_ptr<const scene::Scene>& scene_of(const SceneResources& resour
   return resources.scene;
 }
 
-std::uint32_t longest_kept_side(Engine& engine) {
-  return engine.parts().device.is_cpu() ? longest_heap_side : engine.max_image_size();
+scene::KeptTextures kept_textures(Engine& engine) {
+  const gpu::Device& device = engine.parts().device;
+  return device.is_cpu() ? heap_textures(device) : scene::KeptTextures();
 }
 
 std::uint64_t memory_bytes(const SceneResources& resources) {

@@ -9,7 +9,7 @@
 #include <stop_token>
 #include <tuple>
 
-#include "render/api/kept_textures.hpp"
+#include "render/resources/heap_textures.hpp"
 #include "render/resources/lights/light_table.hpp"
 #include "render/resources/placement.hpp"
 #include "scene/gltf/materials/images.hpp"
@@ -278,10 +278,12 @@ void SceneResources::upload_tables(const gpu::Device& device, bool host_kernels)
 void SceneResources::upload_textures(const UploadProgress& progress, const ImageDone& image_done) {
   const auto& images = scene->images;
   TextureHeapWriter heap(device_, *scene);
+  const scene::KeptTextures kept =
+      device_.is_cpu() ? heap_textures(device_) : scene::KeptTextures();
+  const std::uint32_t longest = scene::longest_side_that_fits(images, kept).value_or(1);
   for (std::size_t i = 0; i < images.size(); ++i) {
     progress("textures", 0.15f + 0.3f * static_cast<float>(i) / static_cast<float>(images.size()));
-    const std::uint32_t first =
-        device_.is_cpu() ? scene::first_level_within(images[i], longest_heap_side) : 0;
+    const std::uint32_t first = scene::first_level_within(images[i], longest);
     const scene::ImagePixels pixels(images[i], first);
     heap.add(i, pixels.get());
     emission_means.add(*scene, i, pixels.get());

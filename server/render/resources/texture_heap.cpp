@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "render/api/kept_textures.hpp"
+#include "render/resources/heap_textures.hpp"
 #include "scene/image/mipmaps.hpp"
 
 namespace heliograph::render {
@@ -23,19 +23,6 @@ std::uint64_t texels(const scene::Image& image, std::uint32_t first, std::uint32
     sum += std::uint64_t{side(image.width, level)} * side(image.height, level);
   }
   return sum;
-}
-
-std::uint32_t longest_side_that_fits(const scene::Scene& scene, std::uint64_t most_texels) {
-  for (std::uint32_t longest = longest_heap_side; longest > 1; longest /= 2) {
-    std::uint64_t sum = 0;
-    for (const scene::Image& image : scene.images) {
-      sum += texels(image, scene::first_level_within(image, longest), image.levels);
-    }
-    if (sum <= most_texels) return longest;
-  }
-  throw gpu::GpuError("the scene's " + std::to_string(scene.images.size()) +
-                      " images do not fit into one buffer of this device, which holds " +
-                      std::to_string(most_texels) + " texels");
 }
 
 std::uint32_t flags(const scene::Image& image, const scene::Sampler& sampler) {
@@ -68,9 +55,15 @@ class KnownImages {
   std::map<std::pair<bool, std::string_view>, std::size_t> numbers_;
 };
 
-/// @throws gpu::GpuError when the images do not fit into `most_texels`
-HeapPlan plan_heap(const scene::Scene& scene, std::uint64_t most_texels) {
-  const std::uint32_t longest = longest_side_that_fits(scene, most_texels);
+/// @throws gpu::GpuError when the images do not fit
+HeapPlan plan_heap(const scene::Scene& scene, const scene::KeptTextures& kept) {
+  const auto fitting = scene::longest_side_that_fits(scene.images, kept);
+  if (!fitting) {
+    throw gpu::GpuError("the scene's " + std::to_string(scene.images.size()) +
+                        " images do not fit into one buffer of this device, which holds " +
+                        std::to_string(kept.most_texels) + " texels");
+  }
+  const std::uint32_t longest = *fitting;
   HeapPlan plan;
   KnownImages known;
   for (const scene::Image& image : scene.images) {
@@ -103,7 +96,7 @@ HeapPlan plan_heap(const scene::Scene& scene, std::uint64_t most_texels) {
 }  // namespace
 
 PackedTextures pack_textures(const scene::Scene& scene, std::uint64_t most_texels) {
-  HeapPlan plan = plan_heap(scene, most_texels);
+  HeapPlan plan = plan_heap(scene, {longest_heap_side, most_texels});
   PackedTextures packed{std::vector<std::uint32_t>(plan.texels), std::move(plan.textures)};
   for (std::size_t i = 0; i < scene.images.size(); ++i) {
     copy_texels(plan.slots[i], scene.images[i].pixels, packed.texels.data());
@@ -112,9 +105,7 @@ PackedTextures pack_textures(const scene::Scene& scene, std::uint64_t most_texel
 }
 
 TextureHeapWriter::TextureHeapWriter(const gpu::Device& device, const scene::Scene& scene)
-    : device_(device),
-      images_(scene.images),
-      plan_(plan_heap(scene, device.limits().maxTexelBufferElements)) {
+    : device_(device), plan_(plan_heap(scene, heap_textures(device))) {
   if (device.is_cpu()) {
     texels_ =
         gpu::Buffer(device, "texture heap", 4 * plan_.texels, texel_usage, gpu::Memory::device);

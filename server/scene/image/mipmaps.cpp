@@ -158,6 +158,19 @@ std::uint32_t first_level_within(const Image& image, std::uint32_t longest_side)
   return level;
 }
 
+std::optional<std::uint32_t> longest_side_that_fits(std::span<const Image> images,
+                                                    const KeptTextures& kept) {
+  for (std::uint32_t longest = kept.longest_side; longest > 1; longest /= 2) {
+    std::uint64_t bytes = 0;
+    for (const Image& image : images) {
+      bytes += level_offset(image, image.levels) -
+               level_offset(image, first_level_within(image, longest));
+    }
+    if (bytes / 4 <= kept.most_texels) return longest;
+  }
+  return std::nullopt;
+}
+
 void fill_mip_chain(Image& image) {
   Level source{image.pixels.data(), image.width, image.height};
   for (std::uint32_t level = 1; level < image.levels; ++level) {

@@ -328,7 +328,7 @@ LoadedScene SceneLoader::import_scene(Job& job, std::vector<scene::SourceFile>& 
        .progress = [&](std::string_view stage,
                        float fraction) { checkpoint(stage, import_fraction * fraction); },
        .stop = job.stop.get_token(),
-       .longest_kept_side = render::longest_kept_side(engine)}));
+       .kept_textures = render::kept_textures(engine)}));
   sources.insert(sources.end(), imported->sources.begin(), imported->sources.end());
   LoadedScene loaded{.name = job.entry.name};
   loaded.resources = engine.upload_and_free_pixels(

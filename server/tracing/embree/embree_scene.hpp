@@ -44,7 +44,7 @@ class EmbreeScene {
   /// In the pose of `scene`; keeps no reference to it. `alpha_heap` is the scene's and must stay
   /// alive. @throws std::runtime_error, scene::LoadCancelled
   EmbreeScene(RTCDevice device, const scene::Scene& scene, std::span<const std::uint8_t> alpha_heap,
-              const EmbreeLayout& layout, const std::stop_token& stop);
+              const EmbreeLayout& layout, const std::stop_token& stop = {});
   /// Without the instances for which `hidden` is true; shares all triangles with `rest`, of the
   /// same scene. There is no fast copy, so that it is made in half the time.
   /// @throws std::runtime_error

@@ -1,9 +1,11 @@
 #include "scene/gltf/document/gltf_file.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "scene/gltf/document/extension_value.hpp"
+#include "scene/gltf/document/image_views.hpp"
 #include "scene/gltf/document/model_parser.hpp"
 #include "scene/gltf/document/uri.hpp"
 #include "scene/gltf/geometry/meshopt.hpp"
@@ -29,7 +31,7 @@ GltfFile::GltfFile(SourceFile self, ConfinedFolder folder, RegularFile file,
       folder_(std::move(folder)),
       container_(std::move(file)),
       document_(read_document(limits, warnings)),
-      model_(parse_model(document_, [this](std::size_t index) { return read_buffer(index); })) {
+      model_(parse_model(document_)) {
   document_.text = {};
   // tinygltf's last view stands for none.
   model_.bufferViews.pop_back();
@@ -38,6 +40,7 @@ GltfFile::GltfFile(SourceFile self, ConfinedFolder folder, RegularFile file,
       accessor.bufferView = -1;
     }
   }
+  read_buffers();
   read_views(limits);
 }
 
@@ -68,26 +71,69 @@ std::vector<std::uint8_t> GltfFile::resource(const std::string& place) {
   }
 }
 
-std::vector<std::uint8_t> GltfFile::read_buffer(std::size_t index) {
-  const std::uint64_t length = document_.buffer_lengths[index];
-  const std::string place = item_path("", "buffers", index);
-  const auto check_length = [&](std::uint64_t available) {
-    if (length <= available) return;
-    refuse_at(place, "byteLength",
-              std::to_string(length) + " is more than the " + std::to_string(available) +
-                  " bytes there are");
-  };
-  if (document_.uris.contains(place)) {
-    std::vector<std::uint8_t> bytes = resource(place);
-    check_length(bytes.size());
-    bytes.resize(length);
-    return bytes;
+void GltfFile::read_buffers() {
+  image_views_.resize(model_.bufferViews.size());
+  buffers_.resize(document_.buffer_lengths.size());
+  for (std::size_t index = 0; index < buffers_.size(); ++index) {
+    if (!document_.buffers_with_data[index]) continue;
+    const std::uint64_t length = document_.buffer_lengths[index];
+    const std::string place = item_path("", "buffers", index);
+    const auto check_length = [&](std::uint64_t available) {
+      if (length <= available) return;
+      refuse_at(place, "byteLength",
+                std::to_string(length) + " is more than the " + std::to_string(available) +
+                    " bytes there are");
+    };
+    Bytes& buffer = buffers_[index];
+    if (document_.uris.contains(place)) {
+      buffer.file = resource(place);
+      check_length(buffer.file.size());
+      buffer.all = std::span(buffer.file).first(length);
+      continue;
+    }
+    if (index != 0 || !container_.has_binary()) {
+      refuse_at(place, "has neither a uri nor a GLB binary chunk");
+    }
+    check_length(container_.binary_bytes());
+    image_views_ = find_image_views(model_);
+    for (std::size_t i = 0; i < image_views_.size(); ++i) {
+      if (model_.bufferViews[i].buffer != 0) image_views_[i] = false;
+    }
+    buffer.binary = std::make_unique_for_overwrite<std::uint8_t[]>(length);
+    buffer.all = {buffer.binary.get(), length};
+    read_binary({buffer.binary.get(), length});
   }
-  if (index != 0 || !container_.has_binary()) {
-    refuse_at(place, "has neither a uri nor a GLB binary chunk");
+}
+
+void GltfFile::read_binary(std::span<std::uint8_t> bytes) const {
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> ranges;  // first byte, and the one after
+  for (std::size_t i = 0; i < image_views_.size(); ++i) {
+    const tinygltf::BufferView& view = model_.bufferViews[i];
+    if (const auto packed = find_extension(view.extensions, "EXT_meshopt_compression", "")) {
+      const std::uint64_t first = packed->integer("byteOffset").value_or(0);
+      if (packed->integer("buffer") == 0u) {
+        ranges.emplace_back(first, first + *packed->integer("byteLength"));
+      }
+    } else if (view.buffer == 0 && !image_views_[i]) {
+      ranges.emplace_back(view.byteOffset, view.byteOffset + view.byteLength);
+    }
   }
-  check_length(container_.binary_bytes());
-  return container_.read_binary(length, stop_);
+  std::ranges::sort(ranges);
+  std::uint64_t done = 0;
+  for (const auto& [first, end] : ranges) {
+    const std::uint64_t from = std::max(first, done);
+    if (from >= end) continue;
+    container_.read_binary(from, bytes.subspan(from, end - from), stop_);
+    done = end;
+  }
+}
+
+std::vector<std::uint8_t> GltfFile::image_file(std::uint32_t view) const {
+  if (!image_views_[view]) return {views_[view].bytes.begin(), views_[view].bytes.end()};
+  const tinygltf::BufferView& source = model_.bufferViews[view];
+  std::vector<std::uint8_t> bytes(source.byteLength);
+  container_.read_binary(source.byteOffset, bytes, stop_);
+  return bytes;
 }
 
 void GltfFile::read_views(const ImportLimits& limits) {
@@ -107,8 +153,9 @@ BufferView GltfFile::read_view(std::size_t index, std::uint64_t& unpacked_budget
     if (!document_.buffers_with_data[buffer]) {
       refuse_at(place, "buffer", "refers to a buffer without data");
     }
-    return std::span(model_.buffers[buffer].data).subspan(offset, length);
+    return buffers_[buffer].all.subspan(offset, length);
   };
+  if (image_views_[index]) return {{}, stride};
   if (const auto packed = find_extension(view.extensions, "EXT_meshopt_compression", place)) {
     const auto source =
         bytes_of(*packed->integer("buffer"), packed->integer("byteOffset").value_or(0),

@@ -11,7 +11,7 @@
 
 #include "scene/gltf/document/gltf_file.hpp"
 #include "scene/gltf/materials/specular_glossiness.hpp"
-#include "scene/image/image_size.hpp"
+#include "scene/image/mipmaps.hpp"
 #include "scene/scene.hpp"
 
 namespace heliograph::scene {
@@ -20,9 +20,9 @@ namespace heliograph::scene {
 struct ImageSource {
   std::string path;  // for errors: "images[2]"
   std::string name;
-  std::shared_ptr<const std::vector<std::uint8_t>> file;  // when not part of a buffer
-  std::span<const std::uint8_t> bytes;
-  std::string problem;  // why there are no bytes
+  std::shared_ptr<const std::vector<std::uint8_t>> file;
+  std::span<const std::uint8_t> bytes;  // of `file`
+  std::string problem;                  // why there are no bytes
 };
 
 /// An image that is computed from two others of the specular-glossiness model.
@@ -53,12 +53,12 @@ std::vector<ImageSource> read_image_sources(GltfFile& file, const ImportLimits& 
 struct DecodedImages {
   std::vector<Image> images;
   std::vector<std::string> problems;  // per image; empty: none
+  std::uint32_t kept_side = 0;        // the longest of the levels that stay
 };
 
 /// Which levels of decoded images stay.
 struct KeptLevels {
-  std::uint32_t longest_side =
-      largest_image_side;   // larger levels of images with a file are left out
+  KeptTextures textures;    // of images with a file
   std::vector<bool> whole;  // per use: all levels stay
 };
 

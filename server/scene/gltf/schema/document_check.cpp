@@ -129,7 +129,8 @@ class Checker {
     if (type.extras) extras(value, type, place);
     if (type.rule) type.rule(value, *place, document_);
     text_.close('}');
-    if (type.holds_bytes && !keep_buffer(value, *place)) {
+    if (type.holds_bytes) {
+      note_buffer(value, *place);
       text_.rewind(start);
       text_.raw(R"({"byteLength":1,"uri":"none"})");
     }
@@ -181,8 +182,8 @@ class Checker {
     object(*found, with ? *type.extras_with.type : *type.extras, &at);
   }
 
-  /// Whether a buffer has data that a view refers to.
-  bool keep_buffer(const json& buffer, const Place& place) {
+  /// Its length, and whether it has data that a view refers to.
+  void note_buffer(const json& buffer, const Place& place) {
     const std::size_t index = *place.index;
     const auto extensions = buffer.find("extensions");
     const bool fallback =
@@ -191,7 +192,6 @@ class Checker {
     if (!used_[index]) warnings_.add(place.text() + " is used by nothing and was not read");
     result_.buffer_lengths.push_back(*as_integer(buffer.at("byteLength")));
     result_.buffers_with_data.push_back(used_[index] && !fallback);
-    return result_.buffers_with_data.back();
   }
 
   void check(json& value, const Member& member, const Place& place) {

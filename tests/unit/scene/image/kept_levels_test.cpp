@@ -21,16 +21,15 @@ GltfBuilder textured() {
   return builder;
 }
 
-Scene import_with(const GltfBuilder& builder, std::uint32_t longest_kept_side) {
+Scene import_with(const GltfBuilder& builder, const KeptTextures& kept) {
   const TemporaryFolder folder;
-  return import_gltf(folder.write("scene.glb", builder.glb()), {},
-                     {.longest_kept_side = longest_kept_side});
+  return import_gltf(folder.write("scene.glb", builder.glb()), {}, {.kept_textures = kept});
 }
 
 TEST(KeptLevels, AreTheLastOfAllLevels) {
   const Image whole = textured().import().images.at(0);
   ASSERT_EQ(whole.pixels.size(), mip_chain_bytes(16, 8));
-  const Image kept = import_with(textured(), 4).images.at(0);
+  const Image kept = import_with(textured(), {.longest_side = 4}).images.at(0);
   EXPECT_EQ(kept.width, 16u);
   EXPECT_EQ(kept.levels, 5u);
   ASSERT_EQ(kept.pixels.size(), mip_chain_bytes(4, 2));
@@ -40,18 +39,28 @@ TEST(KeptLevels, AreTheLastOfAllLevels) {
 
 TEST(KeptLevels, AreDecodedAgainWhereMoreAreNeeded) {
   const Image whole = textured().import().images.at(0);
-  const Image kept = import_with(textured(), 4).images.at(0);
+  const Image kept = import_with(textured(), {.longest_side = 4}).images.at(0);
   EXPECT_EQ(ImagePixels(kept, 2).get().data(), kept.pixels.data());
   EXPECT_EQ(ImagePixels(kept, 3).get().data(), kept.pixels.data());
   EXPECT_TRUE(std::ranges::equal(ImagePixels(kept, 0).get(), whole.pixels));
   EXPECT_TRUE(std::ranges::equal(ImagePixels(kept, 1).get(), whole.pixels));
 }
 
+TEST(KeptLevels, HaveNoMoreTexelsThanFit) {
+  const Scene scene = textured().import();
+  EXPECT_EQ(longest_side_that_fits(scene.images, {}), largest_image_side);
+  EXPECT_EQ(longest_side_that_fits(scene.images, {8, 43}), 8u) << "8 x 4, 4 x 2, 2 x 1 and 1";
+  EXPECT_EQ(longest_side_that_fits(scene.images, {8, 42}), 4u);
+  EXPECT_EQ(longest_side_that_fits(scene.images, {8, 2}), std::nullopt);
+  const KeptTextures few{.longest_side = 8, .most_texels = 42};
+  EXPECT_EQ(import_with(textured(), few).images.at(0).pixels.size(), mip_chain_bytes(4, 2));
+}
+
 TEST(KeptLevels, LeaveAlphaMasksWhole) {
   GltfBuilder masked = textured();
   masked.json["materials"][0]["alphaMode"] = "MASK";
   const Scene whole = masked.import();
-  const Scene kept = import_with(masked, 1);
+  const Scene kept = import_with(masked, {.longest_side = 1});
   ASSERT_EQ(whole.alpha_heap.size(), 128u);
   EXPECT_EQ(kept.alpha_heap, whole.alpha_heap);
   EXPECT_EQ(kept.images.at(0).pixels.size(), 4u);
