@@ -106,7 +106,7 @@ TEST(Container, ErrorsNameLimits) {
   const GltfBuilder builder = everything();
   ImportLimits limits;
   limits.file_bytes = 100;
-  EXPECT_TRUE(contains(refusal_of(builder, limits), "size"));
+  EXPECT_TRUE(contains(refusal_of(builder, limits), "limit on the files of a scene leaves 100"));
   limits = {};
   limits.triangles = 1;
   EXPECT_TRUE(contains(refusal_of(builder, limits), "limit of"));
