@@ -58,7 +58,7 @@ TEST_F(LargeScene, LooksLikeASmallOneWithTheSameTriangles) {
 }
 
 TEST_F(LargeScene, IsRefusedWithTheLimitWhereShadersReadIt) {
-  render::Engine shaders({.host_kernels = false});
+  render::Engine shaders({.validation = true, .host_kernels = false});
   const auto around = scene::constant_environment(glm::vec3(1.0f));
   try {
     shaders.upload(quad_behind(more_than_bound_), around);

@@ -1,6 +1,4 @@
 // A load ends soon after it is cancelled, whatever it is doing.
-#include "scene/import_error.hpp"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -8,6 +6,7 @@
 #include "scene/gltf/geometry/tangents.hpp"
 #include "scene/gltf/schema/document_check.hpp"
 #include "scene/gltf/schema/json_text.hpp"
+#include "scene/import_error.hpp"
 #include "tests/unit/scene/support/gltf_builder.hpp"
 
 namespace heliograph::scene::test {
