@@ -22,7 +22,8 @@ ConfinedFolder::ConfinedFolder(const std::filesystem::path& folder, std::uint64_
   if (error) throw ImportError("the scene's folder cannot be opened");
 }
 
-std::vector<std::uint8_t> ConfinedFolder::read(const std::string& relative) {
+std::vector<std::uint8_t> ConfinedFolder::read(const std::string& relative,
+                                               const std::stop_token& stop) {
   const std::string label = in_quotes(relative);
   const auto outside = [&] { throw ImportError(label + " is outside the scene's folder"); };
   if (relative.find('\0') != std::string::npos)
@@ -36,14 +37,15 @@ std::vector<std::uint8_t> ConfinedFolder::read(const std::string& relative) {
   if (error) throw MissingFile(label + " is missing");
   if (!is_inside(resolved, root_)) outside();
   files_.push_back(examine_file(resolved));
-  std::vector<std::uint8_t> bytes = read_regular_file(resolved, budget_, label);
+  std::vector<std::uint8_t> bytes = read_regular_file(resolved, budget_, label, stop);
   budget_ -= bytes.size();
   return bytes;
 }
 
 std::vector<std::uint8_t> read_regular_file(const std::filesystem::path& path,
-                                            std::uint64_t max_bytes, const std::string& label) {
-  return read_all(RegularFile(path, max_bytes, label));
+                                            std::uint64_t max_bytes, const std::string& label,
+                                            const std::stop_token& stop) {
+  return read_all(RegularFile(path, max_bytes, label), stop);
 }
 
 }  // namespace heliograph::scene

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -20,7 +21,7 @@ class ConfinedFolder {
   /// Reads `relative` (already percent-decoded, '/' separated).
   /// @throws ImportError naming `relative` when it leaves the folder, is missing or exceeds the
   /// budget
-  std::vector<std::uint8_t> read(const std::string& relative);
+  std::vector<std::uint8_t> read(const std::string& relative, const std::stop_token& stop = {});
 
   /// The files read, as they were before reading.
   const std::vector<SourceFile>& files() const { return files_; }
@@ -32,8 +33,9 @@ class ConfinedFolder {
 };
 
 /// Reads a whole regular file of at most `max_bytes`. `label` stands for it in errors.
-/// @throws ImportError
+/// @throws ImportError, LoadCancelled
 std::vector<std::uint8_t> read_regular_file(const std::filesystem::path& path,
-                                            std::uint64_t max_bytes, const std::string& label);
+                                            std::uint64_t max_bytes, const std::string& label,
+                                            const std::stop_token& stop = {});
 
 }  // namespace heliograph::scene

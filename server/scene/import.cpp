@@ -33,6 +33,7 @@
 #include "scene/gltf/nodes/cameras.hpp"
 #include "scene/gltf/nodes/lights.hpp"
 #include "scene/gltf/nodes/nodes.hpp"
+#include "scene/import_error.hpp"
 #include "scene/warnings.hpp"
 
 namespace heliograph::scene {
@@ -69,10 +70,12 @@ class Stopwatch {
 /// exception of the callback is rethrown on all threads.
 class PartsDone {
  public:
-  PartsDone(std::function<void(float fraction)> tell, std::size_t parts)
-      : tell_(std::move(tell)), parts_(parts) {}
+  PartsDone(std::function<void(float fraction)> tell, std::size_t parts,
+            const std::stop_token& stop)
+      : tell_(std::move(tell)), parts_(parts), stop_(stop) {}
 
   void add_one() {
+    throw_if_cancelled(stop_);
     const std::size_t done = ++done_;
     if (stopped_) std::rethrow_exception(reason_);
     if (std::this_thread::get_id() != home_) return;
@@ -88,6 +91,7 @@ class PartsDone {
  private:
   const std::function<void(float fraction)> tell_;
   const std::size_t parts_;
+  const std::stop_token& stop_;
   const std::thread::id home_ = std::this_thread::get_id();
   std::atomic<std::size_t> done_ = 0;
   std::atomic<bool> stopped_ = false;
@@ -99,11 +103,11 @@ class Importer {
   /// `source`: a path, or an open file.
   template <class Source>
   Importer(Source source, std::string name, const ImportLimits& limits,
-           const ImportProgress& progress, const SceneChoice& choice)
-      : limits_(limits), progress_(progress), choice_(choice), budget_(limits.scene_bytes) {
+           const ImportOptions& options)
+      : limits_(limits), options_(options), stop_(options.stop), budget_(limits.scene_bytes) {
     const Stopwatch watch;
     report("reading", 0.0f);
-    file_.emplace(std::move(source), limits, warnings_);
+    file_.emplace(std::move(source), limits, warnings_, stop_);
     scene_.name = std::move(name);
     times_.parse = watch.seconds();
   }
@@ -111,10 +115,10 @@ class Importer {
   Scene import() {
     Stopwatch watch;
     const tinygltf::Model& model = file_->model();
-    const auto shown = choose_scene(model, choice_.scene);
+    const auto shown = choose_scene(model, options_.choice.scene);
     scene_.scenes = read_scene_names(model);
     scene_.shown_scene = shown.value_or(0);
-    const std::vector<Accessor> accessors = read_accessors(*file_, limits_);
+    const std::vector<Accessor> accessors = read_accessors(*file_, limits_, stop_);
     check_skins(model, accessors);
     check_animations(model, accessors);
     TextureTable textures(model);
@@ -123,21 +127,23 @@ class Importer {
     scene_.material_names = std::move(materials.names);
     scene_.material_layers = std::move(materials.layers);
     scene_.variants = read_variants(model);
-    scene_.variant = choose_variant(scene_.variants, choice_.variant);
+    scene_.variant = choose_variant(scene_.variants, options_.choice.variant);
     const PrimitiveTable primitives =
-        read_primitives(*file_, accessors, scene_.variant, limits_, budget_, warnings_);
+        read_primitives(*file_, accessors, scene_.variant, limits_, budget_, warnings_, stop_);
     const std::vector<Light> lights = read_lights(model);
     const std::vector<Camera> cameras = read_cameras(model);
-    NodeTable nodes = read_nodes(model, accessors, shown, limits_, warnings_);
-    const std::vector<ImageSource> images = read_image_sources(*file_, limits_);
+    NodeTable nodes = read_nodes(model, accessors, shown, limits_, warnings_, stop_);
+    const std::vector<ImageSource> images = read_image_sources(*file_, limits_, stop_);
 
     times_.check = watch.lap();
     scene_.textures = textures.used_textures();
     const std::vector<std::uint32_t> mesh_materials = choose_materials(primitives);
     const std::size_t parts = primitives.primitives.size() + textures.image_uses().size();
     PartsDone done([&](float fraction) { report("meshes and images", 0.1f + 0.85f * fraction); },
-                   parts);
+                   parts, stop_);
+    const KeptLevels kept{options_.kept_textures, images_with_alpha(textures)};
     std::vector<std::string> problems;
+    std::uint32_t kept_side = 0;
     FirstFailure failure;
     const auto guarded = [&](double& seconds, const auto& task) {
       const Stopwatch own;
@@ -151,9 +157,10 @@ class Importer {
         },
         [&] {
           guarded(times_.images, [&] {
-            auto decoded =
-                decode_images(images, textures.image_uses(), limits_, [&] { done.add_one(); });
+            auto decoded = decode_images(images, textures.image_uses(), kept, limits_, stop_,
+                                         [&] { done.add_one(); });
             scene_.images = std::move(decoded.images);
+            kept_side = decoded.kept_side;
             problems = std::move(decoded.problems);
           });
         });
@@ -162,6 +169,7 @@ class Importer {
     drop_missing_images(scene_, problems, warnings_);
     build_layers(scene_);
     build_alpha_heap(scene_);
+    for (Image& image : scene_.images) drop_large_levels(image, kept_side);
 
     scene_.clips = read_clips(model, accessors, nodes, budget_, warnings_);
     scene_.skins = read_skins(model, accessors, nodes, budget_);
@@ -179,7 +187,8 @@ class Importer {
 
  private:
   void report(std::string_view stage, float fraction) const {
-    if (progress_) progress_(stage, fraction);
+    throw_if_cancelled(stop_);
+    if (options_.progress) options_.progress(stage, fraction);
   }
 
   // The default material is added only if a primitive has no material.
@@ -200,6 +209,18 @@ class Importer {
     }
     if (scene_.materials.empty()) default_material_index();
     return materials;
+  }
+
+  /// Per use of an image: whether rays read its alpha.
+  std::vector<bool> images_with_alpha(const TextureTable& textures) const {
+    std::vector<bool> result(textures.image_uses().size());
+    constexpr std::uint32_t partial = shared::material_alpha_mask | shared::material_alpha_blend;
+    for (const shared::Material& material : scene_.materials) {
+      const std::uint32_t texture = material.base_color_texture.texture;
+      if (!(material.flags & partial) || texture == shared::no_texture) continue;
+      result[scene_.textures[texture].image] = true;
+    }
+    return result;
   }
 
   void build_meshes(const PrimitiveTable& table, const std::vector<Accessor>& accessors,
@@ -225,7 +246,7 @@ class Importer {
 
   void build(std::size_t index, const Primitive& primitive, std::span<const Accessor> accessors,
              std::uint32_t material) {
-    auto [mesh, sources] = build_mesh(primitive, accessors, material, scene_.materials);
+    auto [mesh, sources] = build_mesh(primitive, accessors, material, scene_.materials, stop_);
     if (primitive.deforms()) {
       scene_.shapes[index] = build_shape(primitive, accessors, mesh, sources);
     }
@@ -236,6 +257,7 @@ class Importer {
     const std::vector<bool> moves = moved_by_clips();
     const Pose pose = rest_pose(scene_);
     for (std::uint32_t i = 0; i < nodes.nodes.size(); ++i) {
+      throw_if_cancelled(stop_, i);
       const NodeAttachments& attached = nodes.attachments[i];
       if (!attached.mesh) continue;
       const float determinant = glm::determinant(glm::mat3(nodes.nodes[i].world));
@@ -351,8 +373,8 @@ class Importer {
   }
 
   const ImportLimits& limits_;
-  const ImportProgress& progress_;
-  const SceneChoice& choice_;
+  const ImportOptions& options_;
+  const std::stop_token& stop_;
   std::optional<GltfFile> file_;
   ByteBudget budget_;
   ImportTimes times_;
@@ -366,14 +388,14 @@ class Importer {
 }  // namespace
 
 Scene import_gltf(const std::filesystem::path& path, const ImportLimits& limits,
-                  const ImportProgress& progress, ImportTimes* times, const SceneChoice& choice) {
+                  const ImportOptions& options) {
   try {
     const Stopwatch watch;
-    Importer importer(path, path.stem().string(), limits, progress, choice);
+    Importer importer(path, path.stem().string(), limits, options);
     Scene scene = importer.import();
-    if (times) {
-      *times = importer.times();
-      times->total = watch.seconds();
+    if (options.times) {
+      *options.times = importer.times();
+      options.times->total = watch.seconds();
     }
     return scene;
   } catch (const std::bad_alloc&) {
@@ -383,7 +405,7 @@ Scene import_gltf(const std::filesystem::path& path, const ImportLimits& limits,
 
 Scene import_lone_gltf(RegularFile file, const ImportLimits& limits) {
   try {
-    return Importer(std::move(file), {}, limits, {}, {}).import();
+    return Importer(std::move(file), {}, limits, ImportOptions()).import();
   } catch (const std::bad_alloc&) {
     throw ImportError("not enough memory for the scene");
   }

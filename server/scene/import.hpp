@@ -2,8 +2,10 @@
 
 #include <filesystem>
 #include <functional>
+#include <stop_token>
 #include <string_view>
 
+#include "scene/image/mipmaps.hpp"
 #include "scene/import_error.hpp"
 #include "scene/import_limits.hpp"
 #include "scene/regular_file.hpp"
@@ -24,12 +26,19 @@ struct ImportTimes {
 /// Progress callback: stage name and fraction of the whole, 0..1. Called on the loading thread.
 using ImportProgress = std::function<void(std::string_view stage, float fraction)>;
 
+struct ImportOptions {
+  SceneChoice choice;
+  ImportProgress progress;       // an exception of it cancels the import and is rethrown
+  ImportTimes* times = nullptr;  // filled if given
+  std::stop_token stop;  // asked by all threads: LoadCancelled is thrown soon after a request
+  /// Other levels of images are not kept, but for alpha masks.
+  KeptTextures kept_textures;
+};
+
 /// Reads a .glb or .gltf file with everything it refers to; opens nothing outside `path`'s folder.
-/// Fills `times` if given. An exception of `progress` cancels the import and is rethrown.
-/// @throws ImportError
+/// @throws ImportError, LoadCancelled
 Scene import_gltf(const std::filesystem::path& path, const ImportLimits& limits = {},
-                  const ImportProgress& progress = {}, ImportTimes* times = nullptr,
-                  const SceneChoice& choice = {});
+                  const ImportOptions& options = {});
 
 /// Reads a .glb or .gltf file that is alone: others that it refers to are missing. Opens none.
 /// @throws ImportError

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <stdexcept>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,5 +35,17 @@ class NoSuchChoice : public ImportError {
   std::string member_;
   std::vector<std::string> names_;
 };
+
+/// Thrown by a load that was asked to stop; not an error.
+struct LoadCancelled {};
+
+inline void throw_if_cancelled(const std::stop_token& stop) {
+  if (stop.stop_requested()) throw LoadCancelled();
+}
+
+/// In a loop over many small things, with the number of each: asks now and then only.
+inline void throw_if_cancelled(const std::stop_token& stop, std::size_t number) {
+  if (number % 4096 == 0) throw_if_cancelled(stop);
+}
 
 }  // namespace heliograph::scene

@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <utility>
 
@@ -12,6 +13,9 @@
 namespace heliograph::scene {
 
 namespace {
+
+// Of a single read, so that a load can be cancelled in between.
+constexpr std::size_t most_bytes_at_once = 8 << 20;
 
 // Non-blocking: opening a pipe must not wait for its writer before its type is checked.
 int open_to_read(const std::filesystem::path& path, const std::string& label) {
@@ -28,7 +32,7 @@ RegularFile::RegularFile(const std::filesystem::path& path, std::uint64_t max_by
 
 RegularFile::RegularFile(int descriptor, std::uint64_t max_bytes, std::string label)
     : label_(std::move(label)), descriptor_(descriptor) {
-  const auto fail = [&](const char* reason) {
+  const auto fail = [&](const std::string& reason) {
     ::close(descriptor_);
     throw ImportError(label_ + reason);
   };
@@ -37,7 +41,10 @@ RegularFile::RegularFile(int descriptor, std::uint64_t max_bytes, std::string la
     fail(" is not a regular file");
   }
   size_ = static_cast<std::uint64_t>(status.st_size);
-  if (size_ > max_bytes) fail(" exceeds the limit on the size of a scene's files");
+  if (size_ > max_bytes) {
+    fail(" has " + std::to_string(size_) + " bytes: the limit on the files of a scene leaves " +
+         std::to_string(max_bytes));
+  }
 }
 
 RegularFile::RegularFile(RegularFile&& other) noexcept
@@ -49,10 +56,13 @@ RegularFile::~RegularFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-void RegularFile::read(std::uint64_t offset, std::span<std::uint8_t> bytes) const {
+void RegularFile::read(std::uint64_t offset, std::span<std::uint8_t> bytes,
+                       const std::stop_token& stop) const {
   while (!bytes.empty()) {
+    throw_if_cancelled(stop);
     const ssize_t count =
-        ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+        ::pread(descriptor_, bytes.data(), std::min(bytes.size(), most_bytes_at_once),
+                static_cast<off_t>(offset));
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) throw ImportError(label_ + " cannot be read completely");
     bytes = bytes.subspan(static_cast<std::size_t>(count));
@@ -60,9 +70,9 @@ void RegularFile::read(std::uint64_t offset, std::span<std::uint8_t> bytes) cons
   }
 }
 
-std::vector<std::uint8_t> read_all(const RegularFile& file) {
+std::vector<std::uint8_t> read_all(const RegularFile& file, const std::stop_token& stop) {
   std::vector<std::uint8_t> bytes(static_cast<std::size_t>(file.size()));
-  file.read(0, bytes);
+  file.read(0, bytes, stop);
   return bytes;
 }
 

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -21,8 +22,9 @@ class RegularFile {
   RegularFile& operator=(const RegularFile&) = delete;
 
   std::uint64_t size() const { return size_; }
-  /// Fills `bytes`, which lie within the file, from `offset`. @throws ImportError
-  void read(std::uint64_t offset, std::span<std::uint8_t> bytes) const;
+  /// Fills `bytes`, which lie within the file, from `offset`. @throws ImportError, LoadCancelled
+  void read(std::uint64_t offset, std::span<std::uint8_t> bytes,
+            const std::stop_token& stop = {}) const;
 
  private:
   std::string label_;
@@ -30,7 +32,7 @@ class RegularFile {
   std::uint64_t size_ = 0;
 };
 
-/// All bytes of it. @throws ImportError
-std::vector<std::uint8_t> read_all(const RegularFile& file);
+/// All bytes of it. @throws ImportError, LoadCancelled
+std::vector<std::uint8_t> read_all(const RegularFile& file, const std::stop_token& stop = {});
 
 }  // namespace heliograph::scene

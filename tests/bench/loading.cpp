@@ -1,10 +1,13 @@
 // From a scene file to its first frame, stage by stage: one line of JSON per load. The first load
 // includes the creation of pipelines. "processor_seconds" is CPU time of all threads, which is
 // robust on a busy machine. Memory peaks are relative to the start; "decoded_bytes" are geometry,
-// images and mip levels, once each.
+// images and mip levels, once each; "kept" is what is resident once the temporary memory of loading
+// has been given back. With --cancel, loads are cancelled so many seconds after their start, and
+// "late" is how long they go on.
 #include <malloc.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <ctime>
@@ -12,7 +15,10 @@
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <stop_token>
+#include <thread>
 
+#include "render/api/kept_textures.hpp"
 #include "render/api/renderer.hpp"
 #include "scene/camera.hpp"
 #include "scene/gltf/geometry/tangents.hpp"
@@ -26,6 +32,9 @@ struct Options {
   std::string environment;
   std::string device;
   int repeats = 3;
+  std::vector<double> cancel;
+  double most_peak = 0.0;
+  double most_late = 0.0;
   std::uint32_t width = 640;
   std::uint32_t height = 360;
 };
@@ -99,7 +108,8 @@ nlohmann::json load(render::Engine& engine, const std::filesystem::path& path,
   const Clock::time_point start = Clock::now();
   const std::clock_t spent_before = std::clock();
   scene::ImportTimes times;
-  auto whole = std::make_unique<scene::Scene>(scene::import_gltf(path, {}, {}, &times));
+  auto whole = std::make_unique<scene::Scene>(scene::import_gltf(
+      path, {}, {.times = &times, .kept_textures = render::kept_textures(engine)}));
   const Clock::time_point imported = Clock::now();
   const std::uint64_t decoded = whole->bytes();
   const std::uint64_t import_peak = peak_bytes() - before;
@@ -111,6 +121,7 @@ nlohmann::json load(render::Engine& engine, const std::filesystem::path& path,
   const double upload = seconds_since(imported);
   const Clock::time_point uploaded = Clock::now();
   const std::uint64_t loading_peak = peak_bytes() - before;
+  const std::uint64_t kept = restart_peak() - before;
   render::Renderer renderer(engine);
   renderer.set_scene(resources);
   renderer.set_size(options.width, options.height);
@@ -142,8 +153,49 @@ nlohmann::json load(render::Engine& engine, const std::filesystem::path& path,
           {"loading_peak_bytes", loading_peak},
           {"loading_peak_of_decoded", double(loading_peak) / double(decoded)},
           {"kept_bytes", scene->bytes() + render::memory_bytes(*resources)},
+          {"kept_resident_bytes", kept},
+          {"loading_peak_of_kept", double(loading_peak) / double(kept)},
           {"program_bytes_before", before},
           {"program_bytes_after", status_bytes("VmRSS:")}};
+}
+
+/// A load that is cancelled `seconds` after its start.
+nlohmann::json cancel(render::Engine& engine, const std::filesystem::path& path,
+                      const std::shared_ptr<const scene::Environment>& environment,
+                      double seconds) {
+  std::stop_source stop;
+  const Clock::time_point start = Clock::now();
+  const auto check = [&](std::string_view, float) { scene::throw_if_cancelled(stop.get_token()); };
+  std::jthread canceller([&](const std::stop_token& end) {
+    while (!end.stop_requested() && seconds_since(start) < seconds) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    stop.request_stop();
+  });
+  nlohmann::json result{{"scene", path.stem().string()}, {"cancelled_after", seconds}};
+  try {
+    auto scene = std::make_unique<scene::Scene>(
+        scene::import_gltf(path, {},
+                           {.progress = check,
+                            .stop = stop.get_token(),
+                            .kept_textures = render::kept_textures(engine)}));
+    engine.upload_and_free_pixels(std::move(scene), environment, check);
+    result["complete_after"] = seconds_since(start);
+  } catch (const scene::LoadCancelled&) {
+    result["late"] = seconds_since(start) - seconds;
+  }
+  return result;
+}
+
+void print(const nlohmann::json& line) {
+  std::printf("%s\n", line.dump().c_str());
+  std::fflush(stdout);
+}
+
+void check(const nlohmann::json& line, const char* name, double most) {
+  if (most <= 0.0 || line.value(name, 0.0) <= most) return;
+  throw std::runtime_error(line["scene"].get<std::string>() + ": " + name + " is " +
+                           line[name].dump() + ", the limit is " + std::to_string(most));
 }
 
 void run(const Options& options) {
@@ -153,8 +205,14 @@ void run(const Options& options) {
                                   : scene::load_environment(options.environment));
   for (const std::filesystem::path& path : options.scenes) {
     for (int i = 0; i < options.repeats; ++i) {
-      std::printf("%s\n", load(engine, path, environment, options).dump().c_str());
-      std::fflush(stdout);
+      const nlohmann::json line = load(engine, path, environment, options);
+      print(line);
+      check(line, "loading_peak_of_kept", options.most_peak);
+    }
+    for (const double seconds : options.cancel) {
+      const nlohmann::json line = cancel(engine, path, environment, seconds);
+      print(line);
+      check(line, "late", options.most_late);
     }
   }
 }
@@ -171,6 +229,11 @@ int main(int count, char** arguments) {
   app.add_option("--repeats", options.repeats, "Number of loads of each scene");
   app.add_option("--width", options.width, "Frame width, pixels");
   app.add_option("--height", options.height, "Frame height, pixels");
+  app.add_option("--cancel", options.cancel, "Cancel loads after so many seconds, one each");
+  app.add_option("--most-peak", options.most_peak,
+                 "Fail where the peak is more times what stays in memory");
+  app.add_option("--most-late", options.most_late,
+                 "Fail where a cancelled load goes on for more seconds");
   CLI11_PARSE(app, count, arguments);
   try {
     heliograph::bench::run(options);

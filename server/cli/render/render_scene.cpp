@@ -241,8 +241,8 @@ void load(RenderContext& context, const RenderTask& task, std::unique_ptr<scene:
 
 std::unique_ptr<scene::Scene> read_scene(const RenderContext& context, const RenderTask& task) {
   return std::make_unique<scene::Scene>(
-      scene::import_gltf(task.request.scene, context.options.limits, {}, nullptr,
-                         {.scene = {}, .variant = task.request.variant}));
+      scene::import_gltf(task.request.scene, context.options.limits,
+                         {.choice = {.scene = {}, .variant = task.request.variant}}));
 }
 
 void prepare(RenderContext& context, const RenderTask& task, render::Renderer& renderer,

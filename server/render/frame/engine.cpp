@@ -1,6 +1,8 @@
 #include "gpu/device/several_devices.hpp"
 #include "render/api/devices.hpp"
+#include "render/api/kept_textures.hpp"
 #include "render/frame/engine_parts.hpp"
+#include "render/resources/heap_textures.hpp"
 #include "render/resources/scene_resources.hpp"
 #include "render/resources/tables/jpeg_tables.hpp"
 #include "shaders/embedded.hpp"
@@ -170,9 +172,10 @@ std::shared_ptr<const SceneResources> Engine::upload_images(
   report("environment", 0.0f);
   const std::shared_ptr<Parts> parts = current();
   auto around = parts->environments.get(std::move(environment));
-  return with_device(parts, std::make_shared<const SceneResources>(
-                                parts->device, parts->programs, std::move(scene), std::move(around),
-                                *parts->tracer, report, image_done));
+  return with_device(parts,
+                     std::make_shared<const SceneResources>(
+                         parts->device, parts->programs, parts->host_kernels, std::move(scene),
+                         std::move(around), *parts->tracer, report, image_done));
 }
 
 std::shared_ptr<const SceneResources> Engine::empty_scene() {
@@ -182,7 +185,8 @@ std::shared_ptr<const SceneResources> Engine::empty_scene() {
     auto black =
         std::make_shared<const scene::Environment>(scene::constant_environment(glm::vec3(0.0f)));
     parts->empty = std::make_shared<const SceneResources>(
-        parts->device, parts->programs, std::make_shared<const scene::Scene>(make_empty_scene()),
+        parts->device, parts->programs, parts->host_kernels,
+        std::make_shared<const scene::Scene>(make_empty_scene()),
         parts->environments.get(std::move(black)), *parts->tracer, [](std::string_view, float) {},
         [](std::size_t) {});
   }
@@ -208,6 +212,11 @@ bool Engine::owns(const LitEnvironment& environment) const {
 
 const std::shared_ptr<const scene::Scene>& scene_of(const SceneResources& resources) {
   return resources.scene;
+}
+
+scene::KeptTextures kept_textures(Engine& engine) {
+  const gpu::Device& device = engine.parts().device;
+  return device.is_cpu() ? heap_textures(device) : scene::KeptTextures();
 }
 
 std::uint64_t memory_bytes(const SceneResources& resources) {

@@ -83,8 +83,15 @@ struct FrameInputs {
   /// The compute program of an embedded shader, made for a scene with these features (all of them
   /// where the shader does not ask) when the plan needs it.
   gpu::ProgramSource program(const gpu::ShaderBinary& shader, std::uint32_t features = ~0u) const {
-    return [&all = programs, &shader, features]() -> const gpu::ComputeProgram& {
-      return all.compute(shader, features);
+    return [&all = programs, &shader, features,
+            unbound = scene.for_kernels_only]() -> const gpu::ComputeProgram& {
+      const gpu::ComputeProgram& program = all.compute(shader, features);
+      if (unbound && program.uses_set(scene_set)) {
+        throw gpu::GpuError(
+            "these settings need a shader that reads the scene, which is larger "
+            "than what this device binds");
+      }
+      return program;
     };
   }
 

@@ -2,23 +2,31 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstring>
 #include <future>
 #include <map>
+#include <stop_token>
 #include <tuple>
 
+#include "render/resources/heap_textures.hpp"
 #include "render/resources/lights/light_table.hpp"
 #include "render/resources/placement.hpp"
 #include "scene/gltf/materials/images.hpp"
 #include "scene/gltf/materials/layer_table.hpp"
 #include "scene/image/mipmaps.hpp"
 #include "scene/import.hpp"
+#include "tracing/stoppable_tracer.hpp"
 
 namespace heliograph::render {
 namespace {
 
+bool binds(const gpu::Device& device, std::uint64_t bytes) {
+  return bytes <= device.limits().maxStorageBufferRange;
+}
+
 void check_size(const gpu::Device& device, const char* name, std::uint64_t bytes) {
-  if (bytes <= device.limits().maxStorageBufferRange) return;
+  if (binds(device, bytes)) return;
   throw scene::ImportError("the scene's " + std::string(name) + " take " +
                            std::to_string(bytes >> 20) + " MiB; this device binds at most " +
                            std::to_string(device.limits().maxStorageBufferRange >> 20) + " MiB");
@@ -32,15 +40,21 @@ gpu::Buffer upload(const gpu::Device& device, const char* name,
   return gpu::upload_buffer(device, name, bytes, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | usage);
 }
 
+template <typename Element>
+std::uint64_t bytes_of_meshes(const std::vector<scene::Mesh>& meshes,
+                              std::vector<Element> scene::Mesh::*list) {
+  std::uint64_t bytes = 0;
+  for (const scene::Mesh& mesh : meshes) bytes += (mesh.*list).size() * sizeof(Element);
+  return bytes;
+}
+
 /// One list of all meshes, one after the other, without a copy in between where the device's memory
 /// is ours.
 template <typename Element>
 gpu::Buffer upload_of_meshes(const gpu::Device& device, const char* name,
                              const std::vector<scene::Mesh>& meshes,
                              std::vector<Element> scene::Mesh::*list, VkBufferUsageFlags usage) {
-  std::size_t count = 0;
-  for (const scene::Mesh& mesh : meshes) count += (mesh.*list).size();
-  check_size(device, name, count * sizeof(Element));
+  const std::size_t count = bytes_of_meshes(meshes, list) / sizeof(Element);
   const auto gather = [&](Element* to) {
     for (const scene::Mesh& mesh : meshes) to = std::ranges::copy(mesh.*list, to).out;
   };
@@ -138,10 +152,26 @@ gpu::Image make_texture(const gpu::Device& device, const scene::Image& from,
   return image;
 }
 
+/// How often a load that waits tells that it goes on, which may end it.
+constexpr std::chrono::milliseconds progress_interval{50};
+
+std::shared_ptr<const tracing::AccelerationStructure> build_structure(
+    const tracing::RayTracer& tracer, const scene::Scene& scene,
+    const tracing::SceneBuffers& tables, const std::stop_token& stop) {
+  const auto* const stoppable = dynamic_cast<const tracing::StoppableTracer*>(&tracer);
+  return stoppable ? stoppable->build_unless_stopped(scene, tables, stop)
+                   : tracer.build(scene, tables);
+}
+
+struct StopAtEnd {
+  std::stop_source& source;
+  ~StopAtEnd() { source.request_stop(); }
+};
+
 }  // namespace
 
 SceneResources::SceneResources(const gpu::Device& device, const Programs& programs,
-                               std::shared_ptr<const scene::Scene> source,
+                               bool host_kernels, std::shared_ptr<const scene::Scene> source,
                                std::shared_ptr<const LitEnvironment> around,
                                const tracing::RayTracer& tracer, const UploadProgress& progress,
                                const ImageDone& image_done)
@@ -153,11 +183,15 @@ SceneResources::SceneResources(const gpu::Device& device, const Programs& progra
       white_(constant_texture(device, "white", {255, 255, 255, 255})),
       flat_normal_(constant_texture(device, "flat normal", {128, 128, 255, 255})) {
   progress("tables", 0.1f);
-  upload_tables(device);
+  upload_tables(device, host_kernels);
   make_samplers();
   // Beside the textures, which one thread copies.
-  auto structure =
-      std::async(std::launch::async, [&] { return tracer.build(*scene, rest_tables); });
+  std::stop_source stop;
+  auto structure = std::async(std::launch::async, [&] {
+    return build_structure(tracer, *scene, rest_tables, stop.get_token());
+  });
+  // Destroyed before the future, which waits for its thread.
+  const StopAtEnd stops_with_this{stop};
   upload_textures(progress, image_done);
   upload_emissive_triangles();
   if (device.is_cpu()) {
@@ -166,7 +200,9 @@ SceneResources::SceneResources(const gpu::Device& device, const Programs& progra
     material_sets();
   }
   list_draws();
-  progress("acceleration structure", 0.5f);
+  do {
+    progress("acceleration structure", 0.5f);
+  } while (structure.wait_for(progress_interval) != std::future_status::ready);
   rest_structure = structure.get();
 }
 
@@ -187,7 +223,15 @@ std::uint64_t SceneResources::bytes() const {
   return sum;
 }
 
-void SceneResources::upload_tables(const gpu::Device& device) {
+void SceneResources::upload_tables(const gpu::Device& device, bool host_kernels) {
+  const std::uint64_t vertex_bytes = bytes_of_meshes(scene->meshes, &scene::Mesh::vertices);
+  const std::uint64_t index_bytes = bytes_of_meshes(scene->meshes, &scene::Mesh::indices);
+  for_kernels_only = device.is_cpu() && host_kernels &&
+                     !(binds(device, vertex_bytes) && binds(device, index_bytes));
+  if (!for_kernels_only) {
+    check_size(device, "vertices", vertex_bytes);
+    check_size(device, "indices", index_bytes);
+  }
   std::uint64_t vertices = 0, indices = 0;
   for (const scene::Mesh& mesh : scene->meshes) {
     meshes_.push_back({static_cast<std::uint32_t>(indices),
@@ -234,9 +278,13 @@ void SceneResources::upload_tables(const gpu::Device& device) {
 void SceneResources::upload_textures(const UploadProgress& progress, const ImageDone& image_done) {
   const auto& images = scene->images;
   TextureHeapWriter heap(device_, *scene);
+  const scene::KeptTextures kept =
+      device_.is_cpu() ? heap_textures(device_) : scene::KeptTextures();
+  const std::uint32_t longest = scene::longest_side_that_fits(images, kept).value_or(1);
   for (std::size_t i = 0; i < images.size(); ++i) {
     progress("textures", 0.15f + 0.3f * static_cast<float>(i) / static_cast<float>(images.size()));
-    const scene::ImagePixels pixels(images[i]);
+    const std::uint32_t first = scene::first_level_within(images[i], longest);
+    const scene::ImagePixels pixels(images[i], first);
     heap.add(i, pixels.get());
     emission_means.add(*scene, i, pixels.get());
     if (!device_.is_cpu()) images_.push_back(make_texture(device_, images[i], pixels.get()));
@@ -258,7 +306,7 @@ void SceneResources::upload_emissive_triangles() {
 void SceneResources::make_missing_images() const {
   while (images_.size() < scene->images.size()) {
     const scene::Image& image = scene->images[images_.size()];
-    images_.push_back(make_texture(device_, image, scene::ImagePixels(image).get()));
+    images_.push_back(make_texture(device_, image, scene::ImagePixels(image, 0).get()));
   }
 }
 

@@ -48,7 +48,8 @@ using ImageDone = std::function<void(std::size_t image)>;
 
 class SceneResources {
  public:
-  SceneResources(const gpu::Device& device, const Programs& programs,
+  /// `host_kernels`: whether passes that have one run theirs, so that no shader reads the scene.
+  SceneResources(const gpu::Device& device, const Programs& programs, bool host_kernels,
                  std::shared_ptr<const scene::Scene> scene,
                  std::shared_ptr<const LitEnvironment> environment,
                  const tracing::RayTracer& tracer, const UploadProgress& progress,
@@ -68,7 +69,9 @@ class SceneResources {
   float emissive_power = 0.0f;            // shared::EmissiveHeader::power of it
   kernels::MaterialTable host_materials;  // on devices that are processors
   std::uint32_t features = 0;             // shared::scene_*
-  std::vector<Draw> draws;                // opaque first, then by material
+  /// Vertices or indices take more memory than shaders of this device can bind.
+  bool for_kernels_only = false;
+  std::vector<Draw> draws;  // opaque first, then by material
   std::uint32_t deforming_vertices = 0;
 
   /// What the rasteriser reads. On processors, where rays find most G-buffers, images that samplers
@@ -80,7 +83,7 @@ class SceneResources {
   kernels::MaterialTable make_host_materials(std::span<const shared::Material> materials) const;
 
  private:
-  void upload_tables(const gpu::Device& device);
+  void upload_tables(const gpu::Device& device, bool host_kernels);
   void upload_textures(const UploadProgress& progress, const ImageDone& image_done);
   void upload_emissive_triangles();
   void make_samplers();

@@ -1,5 +1,7 @@
 #include "render/resources/scene_set.hpp"
 
+#include <algorithm>
+
 namespace heliograph::render {
 
 std::vector<gpu::DescriptorLayout::Binding> scene_bindings() {
@@ -14,9 +16,13 @@ void write_scene_set(const gpu::Device& device, VkDescriptorSet set,
                      const tracing::SceneTables& tables, const TextureHeap& heap,
                      const gpu::Buffer& layers, const EmissiveBuffers& emissive) {
   constexpr auto storage = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+  // Of larger ones see SceneResources::for_kernels_only.
+  const auto bound_size = [&](const gpu::Buffer& table) {
+    return std::min<VkDeviceSize>(table.size(), device.limits().maxStorageBufferRange);
+  };
   gpu::DescriptorWriter(device, set)
-      .buffer(0, storage, tables.vertices.handle())
-      .buffer(1, storage, tables.indices.handle())
+      .buffer(0, storage, tables.vertices.handle(), 0, bound_size(tables.vertices))
+      .buffer(1, storage, tables.indices.handle(), 0, bound_size(tables.indices))
       .buffer(2, storage, tables.meshes.handle())
       .buffer(3, storage, tables.instances.handle())
       .buffer(4, storage, tables.materials.handle())

@@ -1,15 +1,16 @@
 #include "render/resources/texture_heap.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 #include <string_view>
 #include <utility>
 
+#include "render/resources/heap_textures.hpp"
+#include "scene/image/mipmaps.hpp"
+
 namespace heliograph::render {
 namespace {
 
-constexpr std::uint32_t largest_side = 1024;
 constexpr VkBufferUsageFlags texel_usage = VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT;
 
 std::uint32_t side(std::uint32_t size, std::uint32_t level) {
@@ -24,29 +25,6 @@ std::uint64_t texels(const scene::Image& image, std::uint32_t first, std::uint32
   return sum;
 }
 
-/// The first level no side of which is longer than `longest`; the last where none is short enough.
-std::uint32_t first_level(const scene::Image& image, std::uint32_t longest) {
-  std::uint32_t level = 0;
-  while (level + 1 < image.levels &&
-         std::max(side(image.width, level), side(image.height, level)) > longest) {
-    ++level;
-  }
-  return level;
-}
-
-std::uint32_t longest_side_that_fits(const scene::Scene& scene, std::uint64_t most_texels) {
-  for (std::uint32_t longest = largest_side; longest > 1; longest /= 2) {
-    std::uint64_t sum = 0;
-    for (const scene::Image& image : scene.images) {
-      sum += texels(image, first_level(image, longest), image.levels);
-    }
-    if (sum <= most_texels) return longest;
-  }
-  throw gpu::GpuError("the scene's " + std::to_string(scene.images.size()) +
-                      " images do not fit into one buffer of this device, which holds " +
-                      std::to_string(most_texels) + " texels");
-}
-
 std::uint32_t flags(const scene::Image& image, const scene::Sampler& sampler) {
   const auto bit = [](bool on, std::uint32_t flag) { return on ? flag : 0u; };
   return bit(image.srgb, shared::texture_srgb) |
@@ -55,9 +33,11 @@ std::uint32_t flags(const scene::Image& image, const scene::Sampler& sampler) {
          bit(sampler.mip_filter == scene::Filter::nearest, shared::texture_levels_nearest);
 }
 
+/// The heap keeps the last levels.
 void copy_texels(const HeapPlan::Slot& slot, std::span<const std::uint8_t> pixels,
                  std::uint32_t* heap) {
-  std::memcpy(heap + slot.first, &pixels[slot.skipped * 4], slot.kept * 4);
+  const auto kept = pixels.last(slot.kept * 4);
+  std::ranges::copy(kept, reinterpret_cast<std::uint8_t*>(heap + slot.first));
 }
 
 /// Finds images that have the same texels as one before, by their encoded files.
@@ -75,13 +55,19 @@ class KnownImages {
   std::map<std::pair<bool, std::string_view>, std::size_t> numbers_;
 };
 
-/// @throws gpu::GpuError when the images do not fit into `most_texels`
-HeapPlan plan_heap(const scene::Scene& scene, std::uint64_t most_texels) {
-  const std::uint32_t longest = longest_side_that_fits(scene, most_texels);
+/// @throws gpu::GpuError when the images do not fit
+HeapPlan plan_heap(const scene::Scene& scene, const scene::KeptTextures& kept) {
+  const auto fitting = scene::longest_side_that_fits(scene.images, kept);
+  if (!fitting) {
+    throw gpu::GpuError("the scene's " + std::to_string(scene.images.size()) +
+                        " images do not fit into one buffer of this device, which holds " +
+                        std::to_string(kept.most_texels) + " texels");
+  }
+  const std::uint32_t longest = *fitting;
   HeapPlan plan;
   KnownImages known;
   for (const scene::Image& image : scene.images) {
-    const std::uint32_t level = first_level(image, longest);
+    const std::uint32_t level = scene::first_level_within(image, longest);
     const std::size_t first = known.first_like(image, plan.slots.size());
     if (first < plan.slots.size()) {
       plan.slots.push_back({plan.slots[first].skipped, 0, plan.slots[first].first});
@@ -93,7 +79,7 @@ HeapPlan plan_heap(const scene::Scene& scene, std::uint64_t most_texels) {
   }
   for (const scene::Texture& texture : scene.textures) {
     const scene::Image& image = scene.images[texture.image];
-    const std::uint32_t level = first_level(image, longest);
+    const std::uint32_t level = scene::first_level_within(image, longest);
     shared::HeapTexture entry{};
     entry.first_texel = static_cast<std::uint32_t>(plan.slots[texture.image].first);
     entry.width = side(image.width, level);
@@ -110,7 +96,7 @@ HeapPlan plan_heap(const scene::Scene& scene, std::uint64_t most_texels) {
 }  // namespace
 
 PackedTextures pack_textures(const scene::Scene& scene, std::uint64_t most_texels) {
-  HeapPlan plan = plan_heap(scene, most_texels);
+  HeapPlan plan = plan_heap(scene, {longest_heap_side, most_texels});
   PackedTextures packed{std::vector<std::uint32_t>(plan.texels), std::move(plan.textures)};
   for (std::size_t i = 0; i < scene.images.size(); ++i) {
     copy_texels(plan.slots[i], scene.images[i].pixels, packed.texels.data());
@@ -119,7 +105,7 @@ PackedTextures pack_textures(const scene::Scene& scene, std::uint64_t most_texel
 }
 
 TextureHeapWriter::TextureHeapWriter(const gpu::Device& device, const scene::Scene& scene)
-    : device_(device), plan_(plan_heap(scene, device.limits().maxTexelBufferElements)) {
+    : device_(device), plan_(plan_heap(scene, heap_textures(device))) {
   if (device.is_cpu()) {
     texels_ =
         gpu::Buffer(device, "texture heap", 4 * plan_.texels, texel_usage, gpu::Memory::device);

@@ -134,6 +134,43 @@ std::uint64_t mip_chain_bytes(std::uint32_t width, std::uint32_t height) {
   return bytes;
 }
 
+std::uint64_t level_offset(const Image& image, std::uint32_t level) {
+  std::uint64_t bytes = 0;
+  for (std::uint32_t i = 0; i < level; ++i) {
+    bytes += std::uint64_t(std::max(image.width >> i, 1u)) * std::max(image.height >> i, 1u) * 4;
+  }
+  return bytes;
+}
+
+std::uint32_t first_level_in(const Image& image, std::uint64_t bytes) {
+  const std::uint64_t missing = level_offset(image, image.levels) - bytes;
+  std::uint32_t level = 0;
+  while (level + 1 < image.levels && level_offset(image, level) < missing) ++level;
+  return level;
+}
+
+std::uint32_t first_level_within(const Image& image, std::uint32_t longest_side) {
+  std::uint32_t level = 0;
+  while (level + 1 < image.levels &&
+         std::max(image.width >> level, image.height >> level) > longest_side) {
+    ++level;
+  }
+  return level;
+}
+
+std::optional<std::uint32_t> longest_side_that_fits(std::span<const Image> images,
+                                                    const KeptTextures& kept) {
+  for (std::uint32_t longest = kept.longest_side; longest > 1; longest /= 2) {
+    std::uint64_t bytes = 0;
+    for (const Image& image : images) {
+      bytes += level_offset(image, image.levels) -
+               level_offset(image, first_level_within(image, longest));
+    }
+    if (bytes / 4 <= kept.most_texels) return longest;
+  }
+  return std::nullopt;
+}
+
 void fill_mip_chain(Image& image) {
   Level source{image.pixels.data(), image.width, image.height};
   for (std::uint32_t level = 1; level < image.levels; ++level) {

@@ -11,6 +11,7 @@
 #include "protocol/json/jsonrpc.hpp"
 #include "protocol/json/suggestions.hpp"
 #include "render/api/device_lost.hpp"
+#include "render/api/kept_textures.hpp"
 #include "render/api/renderer.hpp"
 #include "session/devices/render_devices.hpp"
 #include "session/event_log.hpp"
@@ -42,9 +43,6 @@ void send_progress(Session& session, const std::string& by, const std::string& n
           {.name = name, .stage = std::string(stage), .fraction = fraction, .by = by}),
       progress_key);
 }
-
-/// Thrown through the importer to end it.
-struct LoadCancelled {};
 
 protocol::Error superseded() {
   return protocol::error::conflict("name", "was replaced by a later scene.load");
@@ -96,6 +94,7 @@ void SceneLoader::stop() {
   {
     const std::lock_guard lock(mutex_);
     if (stopping_.exchange(true)) return;
+    for (const auto& job : jobs_) job->stop.request_stop();
   }
   wake_->notify();
   thread_.join();
@@ -166,9 +165,9 @@ std::vector<SceneLoader::Waiter> SceneLoader::remove_waiters(
     removed.insert(removed.end(), std::make_move_iterator(own),
                    std::make_move_iterator(job->waiters.end()));
     job->waiters.erase(own, job->waiters.end());
-    job->cancelled = job->waiters.empty();
+    if (job->waiters.empty()) job->stop.request_stop();
   }
-  std::erase_if(jobs_, [](const auto& job) { return job->cancelled.load(); });
+  std::erase_if(jobs_, [](const auto& job) { return job->stop.stop_requested(); });
   return removed;
 }
 
@@ -194,7 +193,7 @@ void SceneLoader::run() {
       job = next_job();
       if (!job) return;
       fail_waiters_of_ended_sessions();
-      if (!job->cancelled) run_job(*job);
+      if (!job->stop.stop_requested()) run_job(*job);
     } catch (const std::exception& failure) {
       // There is no memory to tell those who wait; their calls are answered when the job is freed.
       spdlog::error("the scene loader: {}", failure.what());
@@ -243,7 +242,7 @@ void SceneLoader::run_job(Job& job) {
                          seconds_since(start), loaded.scene->triangle_count(),
                          (loaded.host_bytes + loaded.device_bytes) >> 20));
     finish(job, loaded);
-  } catch (const LoadCancelled&) {
+  } catch (const scene::LoadCancelled&) {
     log_info({}, fmt::format("loading {} was cancelled after {:.2f} s", job.entry.name,
                              seconds_since(start)));
   } catch (const scene::NoSuchChoice& failure) {
@@ -309,28 +308,29 @@ LoadedScene SceneLoader::load_scene(Job& job) {
     loaded = import_scene(job, sources);
     migration.add(loaded.resources);
   }
-  throw_if_cancelled(job);
+  throw_if_stopped(job);
   loaded.device_bytes = render::memory_bytes(*loaded.resources);
   return cache_.add(job.key, std::move(loaded), std::move(sources));
 }
 
 LoadedScene SceneLoader::import_scene(Job& job, std::vector<scene::SourceFile>& sources) {
   const auto checkpoint = [&](std::string_view stage, float fraction) {
-    throw_if_cancelled(job);
+    throw_if_stopped(job);
     report_progress(job, stage, fraction);
   };
   if (!job.key.environment.empty()) sources.push_back(scene::examine_file(job.key.environment));
   checkpoint("reading", 0.0f);
   const auto environment = environments_.environment_at(job.key.environment);
+  render::Engine& engine = devices_.engine(job.key.device);
   auto imported = std::make_unique<scene::Scene>(scene::import_gltf(
       job.entry.path, options_.limits,
-      [&](std::string_view stage, float fraction) {
-        checkpoint(stage, import_fraction * fraction);
-      },
-      nullptr, job.key.choice));
+      {.choice = job.key.choice,
+       .progress = [&](std::string_view stage,
+                       float fraction) { checkpoint(stage, import_fraction * fraction); },
+       .stop = job.stop.get_token(),
+       .kept_textures = render::kept_textures(engine)}));
   sources.insert(sources.end(), imported->sources.begin(), imported->sources.end());
   LoadedScene loaded{.name = job.entry.name};
-  render::Engine& engine = devices_.engine(job.key.device);
   loaded.resources = engine.upload_and_free_pixels(
       std::move(imported), environment, [&](std::string_view stage, float fraction) {
         checkpoint(stage, import_fraction + (1.0f - import_fraction) * fraction);
@@ -377,9 +377,9 @@ void SceneLoader::report_progress(Job& job, std::string_view stage, float fracti
   }
 }
 
-void SceneLoader::throw_if_cancelled(const Job& job) {
+void SceneLoader::throw_if_stopped(const Job& job) {
   fail_waiters_of_ended_sessions();
-  if (stopping_ || job.cancelled) throw LoadCancelled();
+  scene::throw_if_cancelled(job.stop.get_token());
 }
 
 }  // namespace heliograph::session

@@ -7,6 +7,7 @@
 #include <mutex>
 #include <optional>
 #include <set>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <thread>
@@ -76,7 +77,7 @@ class SceneLoader {
     SceneKey key;
     CatalogueEntry entry;
     std::vector<Waiter> waiters;  // guarded by mutex_
-    std::atomic<bool> cancelled = false;
+    std::stop_source stop;        // requested without waiters, and by stop()
     std::string
         stage;  // of the newest report; this and the rest are used by the loading thread only
     float fraction = 0.0f;
@@ -98,7 +99,7 @@ class SceneLoader {
   void fail_waiters_of_ended_sessions();
   std::shared_ptr<Job> find_job(const SceneKey& key) const;
   void report_progress(Job& job, std::string_view stage, float fraction);
-  void throw_if_cancelled(const Job& job);
+  void throw_if_stopped(const Job& job);
 
   RenderDevices& devices_;
   const SceneCatalogue& catalogue_;

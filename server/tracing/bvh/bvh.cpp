@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "scene/first_failure.hpp"
 #include "tracing/bvh/alpha_mask.hpp"
 #include "tracing/bvh/hierarchy.hpp"
 #include "tracing/flat_instances.hpp"
@@ -46,7 +47,7 @@ scene::Bounds triangle_box(const Corners& triangle) {
   return {glm::min(a, glm::min(b, c)), glm::max(a, glm::max(b, c))};
 }
 
-TriangleTree build_mesh(RTCDevice device, const scene::Mesh& mesh) {
+TriangleTree build_mesh(RTCDevice device, const scene::Mesh& mesh, const std::stop_token& stop) {
   constexpr std::uint32_t triangles_per_leaf = 4;
   TriangleTree result;
   std::vector<scene::Bounds> boxes(mesh.indices.size() / 3);
@@ -60,7 +61,7 @@ TriangleTree build_mesh(RTCDevice device, const scene::Mesh& mesh) {
     }
     return link;
   };
-  result.hierarchy = build_hierarchy(device, boxes, triangles_per_leaf, write_leaf);
+  result.hierarchy = build_hierarchy(device, boxes, triangles_per_leaf, write_leaf, stop);
   return result;
 }
 
@@ -108,7 +109,8 @@ scene::Bounds part_of(const Corners& triangle, const scene::Bounds& box, int axi
 }
 
 /// Of all flat instances. A spatial split costs build time and memory that pays in large trees.
-TriangleTree build_flat(RTCDevice device, const std::vector<shared::BvhTriangle>& triangles) {
+TriangleTree build_flat(RTCDevice device, const std::vector<shared::BvhTriangle>& triangles,
+                        const std::stop_token& stop) {
   constexpr std::uint32_t triangles_per_leaf = 4;
   TriangleTree result;
   std::vector<scene::Bounds> boxes;
@@ -125,7 +127,7 @@ TriangleTree build_flat(RTCDevice device, const std::vector<shared::BvhTriangle>
     const Corners cut{t.corner0, t.corner1, t.corner2};
     return std::array{part_of(cut, box, axis, at, false), part_of(cut, box, axis, at, true)};
   };
-  result.hierarchy = build_hierarchy(device, boxes, triangles_per_leaf, write_leaf, split);
+  result.hierarchy = build_hierarchy(device, boxes, triangles_per_leaf, write_leaf, stop, split);
   return result;
 }
 
@@ -208,14 +210,15 @@ void append_meshes(Bvh& bvh, const std::vector<TriangleTree>& trees) {
   for (std::size_t i = 0; i < trees.size(); ++i) append_tree(bvh, trees[i], bvh.meshes[i]);
 }
 
-void append_flat(RTCDevice device, Bvh& bvh, const scene::Scene& scene) {
+void append_flat(RTCDevice device, Bvh& bvh, const scene::Scene& scene,
+                 const std::stop_token& stop) {
   const std::vector<shared::BvhTriangle> triangles = flat_triangles(scene, bvh);
   for (const auto& t : triangles) {
     const scene::Bounds box = triangle_box({t.corner0, t.corner1, t.corner2});
     if (box.minimum.x > box.maximum.x) continue;
     bvh.flat_bounds.include(box);
   }
-  append_tree(bvh, build_flat(device, triangles), bvh.flat_tree);
+  append_tree(bvh, build_flat(device, triangles, stop), bvh.flat_tree);
 }
 
 /// The instance whose mesh is the flat tree.
@@ -290,7 +293,8 @@ BvhTopLevel build_top_level(RTCDevice device, const Bvh& bvh,
   return top;
 }
 
-Bvh build_bvh(RTCDevice device, const scene::Scene& scene, const BvhLayout& layout) {
+Bvh build_bvh(RTCDevice device, const scene::Scene& scene, const BvhLayout& layout,
+              const std::stop_token& stop) {
   Bvh bvh;
   bvh.flat = layout.flat ? flat_instances(scene, layout.most_bytes)
                          : std::vector<bool>(scene.instances.size());
@@ -302,11 +306,14 @@ Bvh build_bvh(RTCDevice device, const scene::Scene& scene, const BvhLayout& layo
     if (!bvh.flat[i]) instanced[scene.instances[i].mesh] = true;
   }
   std::vector<TriangleTree> trees(scene.meshes.size());
+  scene::FirstFailure failure;
   tbb::parallel_for(std::size_t(0), trees.size(), [&](std::size_t i) {
-    if (instanced[i] && bvh.meshes[i].covers) trees[i] = build_mesh(device, scene.meshes[i]);
+    if (!instanced[i] || !bvh.meshes[i].covers) return;
+    failure.guard([&] { trees[i] = build_mesh(device, scene.meshes[i], stop); });
   });
+  failure.rethrow();
   append_meshes(bvh, trees);
-  append_flat(device, bvh, scene);
+  append_flat(device, bvh, scene, stop);
   bvh.first_placed = bvh.records.size();
   std::vector<std::uint32_t> mesh_of;
   std::vector<glm::mat4> worlds;

@@ -67,7 +67,9 @@ BvhTopLevel build_top_level(RTCDevice device, const Bvh& bvh,
                             std::span<const glm::mat4> worlds,
                             std::span<const scene::Bounds> bounds);
 
-/// @throws std::exception when the scene is too large or its hierarchy too deep
-Bvh build_bvh(RTCDevice device, const scene::Scene& scene, const BvhLayout& layout = {});
+/// @throws std::exception when the scene is too large or its hierarchy too deep;
+/// scene::LoadCancelled soon after `stop` was requested
+Bvh build_bvh(RTCDevice device, const scene::Scene& scene, const BvhLayout& layout = {},
+              const std::stop_token& stop = {});
 
 }  // namespace heliograph::tracing

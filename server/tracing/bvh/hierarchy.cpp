@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "scene/import_error.hpp"
+
 namespace heliograph::tracing {
 namespace {
 
@@ -111,24 +113,31 @@ RTCBounds to_embree(const scene::Bounds& box) {
           box.maximum.x, box.maximum.y, box.maximum.z, 0};
 }
 
+/// What Embree's builder hands to its callbacks.
+struct BuildContext {
+  const ItemSplitter& split;
+  const std::stop_token& stop;
+};
+
+bool hierarchy_goes_on(void* context, double) {
+  return !static_cast<const BuildContext*>(context)->stop.stop_requested();
+}
+
 void split_item(const RTCBuildPrimitive* item, unsigned axis, float at, RTCBounds* left,
-                RTCBounds* right, void* splitter) {
-  const auto& split = *static_cast<const ItemSplitter*>(splitter);
+                RTCBounds* right, void* context) {
+  const auto& split = static_cast<const BuildContext*>(context)->split;
   const auto [below, above] = split(item->primID, to_bounds(*item), static_cast<int>(axis), at);
   *left = to_embree(below);
   *right = to_embree(above);
 }
 
 /// Lets Embree cut items, of which there may be half as many more.
-void allow_splits(RTCBuildArguments& arguments, std::vector<RTCBuildPrimitive>& primitives,
-                  const ItemSplitter& split) {
+void allow_splits(RTCBuildArguments& arguments, std::vector<RTCBuildPrimitive>& primitives) {
   primitives.reserve(primitives.size() + primitives.size() / 2);
   arguments.primitives = primitives.data();
   arguments.primitiveArrayCapacity = primitives.capacity();
   arguments.buildQuality = RTC_BUILD_QUALITY_HIGH;
   arguments.splitPrimitive = split_item;
-  // Handed to the other callbacks, too, which do not read it.
-  arguments.userPtr = const_cast<ItemSplitter*>(&split);
 }
 
 RTCBuildArguments build_arguments(RTCBVH bvh, std::vector<RTCBuildPrimitive>& primitives,
@@ -163,15 +172,22 @@ std::uint32_t leaf_link(std::size_t first, std::size_t count) {
 
 Hierarchy build_hierarchy(RTCDevice device, std::span<const scene::Bounds> boxes,
                           std::uint32_t leaf_size, const LeafWriter& write_leaf,
-                          const ItemSplitter& split) {
+                          const std::stop_token& stop, const ItemSplitter& split) {
   Hierarchy hierarchy;
   std::vector<RTCBuildPrimitive> primitives = to_primitives(boxes);
   if (primitives.empty()) return hierarchy;
   const EmbreeHandle<RTCBVH> bvh(rtcNewBVH(device));
   check_embree(device, "prepare a hierarchy");
   RTCBuildArguments arguments = build_arguments(bvh.get(), primitives, leaf_size);
-  if (split) allow_splits(arguments, primitives, split);
+  BuildContext context{split, stop};
+  arguments.userPtr = &context;
+  arguments.buildProgress = hierarchy_goes_on;
+  if (split) allow_splits(arguments, primitives);
   const void* root = rtcBuildBVH(&arguments);
+  if (stop.stop_requested()) {
+    rtcGetDeviceError(device);  // that it was cancelled
+    throw scene::LoadCancelled();
+  }
   check_embree(device, "build a hierarchy");
   hierarchy.nodes.reserve(primitives.size());
   hierarchy.root = Flattener(hierarchy, write_leaf).add(*static_cast<const BuildNode*>(root), 0);

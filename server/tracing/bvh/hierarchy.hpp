@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "scene/scene.hpp"
@@ -33,9 +34,10 @@ using ItemSplitter = std::function<std::array<scene::Bounds, 2>(
 /// Surface area heuristic, binned (Wald 2007), by Embree's builder. Boxes that are empty or not
 /// finite are left out. At most `leaf_size` (<= 8) items share a leaf. Thread safe.
 /// With `split`, large items may lie in several leaves (spatial splits; Stich et al. 2009).
-/// @throws std::runtime_error when the tree is too deep for the traversal stack
+/// @throws std::runtime_error when the tree is too deep for the traversal stack;
+/// scene::LoadCancelled soon after `stop` was requested
 Hierarchy build_hierarchy(RTCDevice device, std::span<const scene::Bounds> boxes,
                           std::uint32_t leaf_size, const LeafWriter& write_leaf,
-                          const ItemSplitter& split = {});
+                          const std::stop_token& stop = {}, const ItemSplitter& split = {});
 
 }  // namespace heliograph::tracing

@@ -9,7 +9,7 @@
 #include "tracing/bvh/bvh.hpp"
 #include "tracing/bvh/moving_bvh.hpp"
 #include "tracing/embree/embree.hpp"
-#include "tracing/ray_tracer.hpp"
+#include "tracing/stoppable_tracer.hpp"
 
 namespace heliograph::tracing {
 namespace {
@@ -119,7 +119,7 @@ class MovingSoftwareStructure : public SoftwareStructure, public MovingStructure
   gpu::Buffer triangles_;
 };
 
-class SoftwareTracer : public RayTracer {
+class SoftwareTracer : public StoppableTracer {
  public:
   explicit SoftwareTracer(const gpu::Device& device)
       : device_(device),
@@ -129,9 +129,11 @@ class SoftwareTracer : public RayTracer {
 
   protocol::TracerKind kind() const override { return protocol::TracerKind::software; }
 
-  std::shared_ptr<const AccelerationStructure> build(const scene::Scene& scene,
-                                                     const SceneBuffers& buffers) const override {
-    return std::make_shared<StaticSoftwareStructure>(device_, build_bvh(embree_.get(), scene),
+  std::shared_ptr<const AccelerationStructure> build_unless_stopped(
+      const scene::Scene& scene, const SceneBuffers& buffers,
+      const std::stop_token& stop) const override {
+    return std::make_shared<StaticSoftwareStructure>(device_,
+                                                     build_bvh(embree_.get(), scene, {}, stop),
                                                      !scene.clips.empty(), buffers.alpha_heap);
   }
 

@@ -3,6 +3,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "scene/import_error.hpp"
+
 namespace heliograph::tracing {
 namespace {
 
@@ -25,6 +27,10 @@ const char* error_name(RTCError error) {
   }
 }
 
+bool commit_goes_on(void* stop, double) {
+  return !static_cast<const std::stop_token*>(stop)->stop_requested();
+}
+
 }  // namespace
 
 EmbreeHandle<RTCDevice> make_embree_device() {
@@ -37,6 +43,19 @@ void check_embree(RTCDevice device, const char* action) {
   const RTCError error = rtcGetDeviceError(device);
   if (error == RTC_ERROR_NONE) return;
   throw std::runtime_error("Embree could not " + std::string(action) + ": " + error_name(error));
+}
+
+void commit_scene(RTCDevice device, RTCScene scene, const char* action,
+                  const std::stop_token& stop) {
+  std::stop_token asked = stop;
+  rtcSetSceneProgressMonitorFunction(scene, commit_goes_on, &asked);
+  rtcCommitScene(scene);
+  rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
+  if (stop.stop_requested()) {
+    rtcGetDeviceError(device);  // that it was cancelled
+    throw scene::LoadCancelled();
+  }
+  check_embree(device, action);
 }
 
 }  // namespace heliograph::tracing

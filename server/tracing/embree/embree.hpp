@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <stop_token>
 #include <type_traits>
 
 #if __has_include(<embree4/rtcore.h>)
@@ -29,5 +30,10 @@ EmbreeHandle<RTCDevice> make_embree_device();
 /// @throws std::runtime_error naming `action` when a call on this thread failed since the last
 /// check
 void check_embree(RTCDevice device, const char* action);
+
+/// Builds a scene. @throws std::runtime_error naming `action`; scene::LoadCancelled soon after
+/// `stop` was requested
+void commit_scene(RTCDevice device, RTCScene scene, const char* action,
+                  const std::stop_token& stop);
 
 }  // namespace heliograph::tracing

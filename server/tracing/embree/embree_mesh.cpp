@@ -65,7 +65,8 @@ void EmbreeMesh::let_through(const RTCFilterFunctionNArguments* arguments) {
 }
 
 EmbreeMeshScene::EmbreeMeshScene(RTCDevice device, std::shared_ptr<const EmbreeMesh> source,
-                                 const scene::Mesh& mesh, Use use, const EmbreeBuild& build)
+                                 const scene::Mesh& mesh, Use use, const EmbreeBuild& build,
+                                 const std::stop_token& stop)
     : source_(std::move(source)), geometry_(source_->make_geometry(device)) {
   std::ranges::transform(mesh.vertices, geometry_.positions.begin(), &shared::Vertex::position);
   // Refitting requires a scene of low build quality; others rebuild on every commit. The refitted
@@ -78,8 +79,7 @@ EmbreeMeshScene::EmbreeMeshScene(RTCDevice device, std::shared_ptr<const EmbreeM
   if (deforms) rtcSetGeometryBuildQuality(geometry, RTC_BUILD_QUALITY_REFIT);
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene_.get(), geometry);
-  rtcCommitScene(scene_.get());
-  check_embree(device, "build a mesh");
+  commit_scene(device, scene_.get(), "build a mesh", stop);
 }
 
 void EmbreeMeshScene::refit(std::span<const shared::Vertex> vertices) {

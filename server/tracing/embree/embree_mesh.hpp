@@ -59,9 +59,10 @@ class EmbreeMeshScene {
  public:
   enum class Use { rigid, deforming };
 
-  /// @throws std::runtime_error
+  /// @throws std::runtime_error, scene::LoadCancelled
   EmbreeMeshScene(RTCDevice device, std::shared_ptr<const EmbreeMesh> source,
-                  const scene::Mesh& mesh, Use use, const EmbreeBuild& build);
+                  const scene::Mesh& mesh, Use use, const EmbreeBuild& build,
+                  const std::stop_token& stop = {});
 
   RTCScene handle() const { return scene_.get(); }
   /// Refits a deforming mesh to its moved vertices.

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "scene/first_failure.hpp"
+#include "scene/import_error.hpp"
 #include "tracing/bvh/bvh.hpp"
 #include "tracing/flat_instances.hpp"
 
@@ -49,15 +51,14 @@ class FlatGeometries {
 
   std::size_t triangles() const { return triangles_; }
 
-  /// Null without triangles.
-  EmbreeHandle<RTCScene> build(const EmbreeBuild& build) const {
+  /// Null without triangles. @throws scene::LoadCancelled
+  EmbreeHandle<RTCScene> build(const EmbreeBuild& build, const std::stop_token& stop) const {
     if (geometries_.empty()) return nullptr;
     EmbreeHandle<RTCScene> scene = new_embree_scene(device_, build);
     for (const Placed& each : geometries_) {
       rtcAttachGeometryByID(scene.get(), each.handle.get(), each.instance);
     }
-    rtcCommitScene(scene.get());
-    check_embree(device_, "build the scene of triangles");
+    commit_scene(device_, scene.get(), "build the scene of triangles", stop);
     return scene;
   }
 
@@ -75,7 +76,8 @@ class FlatGeometries {
 }  // namespace
 
 EmbreeScene::EmbreeScene(RTCDevice device, const scene::Scene& scene,
-                         std::span<const std::uint8_t> alpha_heap, const EmbreeLayout& layout)
+                         std::span<const std::uint8_t> alpha_heap, const EmbreeLayout& layout,
+                         const std::stop_token& stop)
     : device_(device),
       layout_(layout),
       meshes_(scene.meshes.size()),
@@ -89,21 +91,19 @@ EmbreeScene::EmbreeScene(RTCDevice device, const scene::Scene& scene,
   for (const Placed& each : placed_) {
     if (!each.flat) instanced[each.mesh] = true;
   }
+  scene::FirstFailure failure;
   tbb::parallel_for(std::size_t(0), meshes_.size(), [&](std::size_t i) {
-    const scene::Mesh& mesh = scene.meshes[i];
-    meshes_[i] = std::make_shared<const EmbreeMesh>(device, mesh, scene.materials[mesh.material],
-                                                    alpha_heap);
-    if (!instanced[i] || meshes_[i]->empty()) return;
-    mesh_scenes_[i] = std::make_shared<EmbreeMeshScene>(device, meshes_[i], mesh,
-                                                        EmbreeMeshScene::Use::rigid, layout.build);
+    failure.guard([&] { make_mesh(i, scene, alpha_heap, instanced[i], stop); });
   });
+  failure.rethrow();
   const FlatGeometries geometries(device, scene, meshes_, flat);
-  flat_ = geometries.build(layout.build);
+  flat_ = geometries.build(layout.build, stop);
   if (layout.fast_copy && geometries.triangles() <= layout.most_bytes / flat_triangle_bytes) {
     const bool split = geometries.triangles() >= least_split_triangles &&
                        geometries.triangles() <= most_split_triangles;
     fast_ = geometries.build(
-        {.robust = false, .quality = split ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM});
+        {.robust = false, .quality = split ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM},
+        stop);
   }
   place_instances(scene);
 }
@@ -146,6 +146,18 @@ EmbreeScene::EmbreeScene(RTCDevice device, const scene::Scene& scene, const Embr
                                                   EmbreeMeshScene::Use::deforming, layout_.build);
   }
   place_instances(scene);
+}
+
+void EmbreeScene::make_mesh(std::size_t number, const scene::Scene& scene,
+                            std::span<const std::uint8_t> alpha_heap, bool instanced,
+                            const std::stop_token& stop) {
+  scene::throw_if_cancelled(stop);
+  const scene::Mesh& mesh = scene.meshes[number];
+  meshes_[number] =
+      std::make_shared<const EmbreeMesh>(device_, mesh, scene.materials[mesh.material], alpha_heap);
+  if (!instanced || meshes_[number]->empty()) return;
+  mesh_scenes_[number] = std::make_shared<EmbreeMeshScene>(
+      device_, meshes_[number], mesh, EmbreeMeshScene::Use::rigid, layout_.build, stop);
 }
 
 EmbreeScenes EmbreeScene::scenes(RayKind kind) const {

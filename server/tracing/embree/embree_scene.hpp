@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "scene/scene.hpp"
@@ -41,9 +42,9 @@ struct EmbreeScenes {
 class EmbreeScene {
  public:
   /// In the pose of `scene`; keeps no reference to it. `alpha_heap` is the scene's and must stay
-  /// alive. @throws std::runtime_error
+  /// alive. @throws std::runtime_error, scene::LoadCancelled
   EmbreeScene(RTCDevice device, const scene::Scene& scene, std::span<const std::uint8_t> alpha_heap,
-              const EmbreeLayout& layout);
+              const EmbreeLayout& layout, const std::stop_token& stop = {});
   /// Without the instances for which `hidden` is true; shares all triangles with `rest`, of the
   /// same scene. There is no fast copy, so that it is made in half the time.
   /// @throws std::runtime_error
@@ -72,6 +73,9 @@ class EmbreeScene {
     EmbreeHandle<RTCGeometry> instance;  // null for flat and hidden instances and empty meshes
   };
 
+  void make_mesh(std::size_t number, const scene::Scene& scene,
+                 std::span<const std::uint8_t> alpha_heap, bool instanced,
+                 const std::stop_token& stop);
   bool in_flat_scene(const scene::Scene& scene, std::size_t instance) const;
   void place_instances(const scene::Scene& scene);
 

@@ -13,7 +13,7 @@
 #include "tracing/embree/embree.hpp"
 #include "tracing/embree/embree_batch.hpp"
 #include "tracing/embree/embree_scene.hpp"
-#include "tracing/ray_tracer.hpp"
+#include "tracing/stoppable_tracer.hpp"
 
 namespace heliograph::tracing {
 namespace {
@@ -83,7 +83,7 @@ void trace_batches(const gpu::FramePlan& plan, const RayStream& stream, gpu::Buf
   });
 }
 
-class EmbreeTracer : public RayTracer {
+class EmbreeTracer : public StoppableTracer {
  public:
   explicit EmbreeTracer(const gpu::Device& device) : embree_(make_embree_device()) {
     rtcSetDeviceMemoryMonitorFunction(embree_.get(), count_bytes, &bytes_);
@@ -94,11 +94,12 @@ class EmbreeTracer : public RayTracer {
 
   protocol::TracerKind kind() const override { return protocol::TracerKind::embree; }
 
-  std::shared_ptr<const AccelerationStructure> build(const scene::Scene& scene,
-                                                     const SceneBuffers& buffers) const override {
+  std::shared_ptr<const AccelerationStructure> build_unless_stopped(
+      const scene::Scene& scene, const SceneBuffers& buffers,
+      const std::stop_token& stop) const override {
     const std::int64_t before = bytes_;
     auto structure = std::make_shared<EmbreeStructure>(
-        EmbreeScene(embree_.get(), scene, mapped_bytes(buffers.alpha_heap), {}));
+        EmbreeScene(embree_.get(), scene, mapped_bytes(buffers.alpha_heap), {}, stop));
     structure->set_bytes(bytes_ - before);
     return structure;
   }

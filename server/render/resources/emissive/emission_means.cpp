@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "scene/image/mipmaps.hpp"
+
 namespace heliograph::render {
 namespace {
 
@@ -39,9 +41,12 @@ class Texels {
  public:
   Texels(const scene::Image& image, const scene::Sampler& sampler,
          std::span<const std::uint8_t> pixels)
-      : sampler_(sampler), decoding_(make_decoding(image.srgb)) {
+      : size_(image.width, image.height),
+        first_level_(scene::first_level_in(image, pixels.size())),
+        sampler_(sampler),
+        decoding_(make_decoding(image.srgb)) {
     std::size_t first = 0;
-    for (std::uint32_t level = 0; level < image.levels; ++level) {
+    for (std::uint32_t level = first_level_; level < image.levels; ++level) {
       const glm::uvec2 size(std::max(image.width >> level, 1u),
                             std::max(image.height >> level, 1u));
       levels_.push_back({size, pixels.data() + first});
@@ -49,12 +54,14 @@ class Texels {
     }
   }
 
-  glm::vec2 size() const { return levels_[0].size; }
+  /// Of the whole image.
+  glm::vec2 size() const { return size_; }
 
-  /// The level whose texels are not smaller than `step` of the largest level's.
+  /// The level at hand whose texels are not smaller than `step` of the largest level's.
   std::size_t level_of(float step) const {
     const int level = step > 1.0f ? static_cast<int>(std::ceil(std::log2(step))) : 0;
-    return std::min(static_cast<std::size_t>(level), levels_.size() - 1);
+    const int at_hand = std::max(level - static_cast<int>(first_level_), 0);
+    return std::min(static_cast<std::size_t>(at_hand), levels_.size() - 1);
   }
 
   glm::vec3 nearest(const glm::vec2& uv, std::size_t number) const {
@@ -72,6 +79,8 @@ class Texels {
     glm::uvec2 size;
     const std::uint8_t* pixels;
   };
+  glm::vec2 size_;
+  std::uint32_t first_level_;
   const scene::Sampler& sampler_;
   std::array<float, 256> decoding_;
   std::vector<Level> levels_;

@@ -16,7 +16,7 @@ class EmissionMeans {
  public:
   explicit EmissionMeans(const scene::Scene& scene);
 
-  /// `pixels` are all levels of the image of that number; each image once.
+  /// `pixels`: levels of the image of that number, perhaps without the largest; each image once.
   void add(const scene::Scene& scene, std::size_t image, std::span<const std::uint8_t> pixels);
 
   /// RGB by triangle; empty where the mesh's emission has no texture.

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "scene/gltf/document/extension_value.hpp"
+#include "scene/import_error.hpp"
 
 namespace heliograph::scene {
 namespace {
@@ -229,10 +230,12 @@ std::uint32_t component_count(ElementType type) {
   return 1;
 }
 
-std::vector<Accessor> read_accessors(const GltfFile& file, const ImportLimits& limits) {
+std::vector<Accessor> read_accessors(const GltfFile& file, const ImportLimits& limits,
+                                     const std::stop_token& stop) {
   std::vector<Accessor> result;
   std::uint64_t replacements = 0;
   for (const tinygltf::Accessor& document : file.model().accessors) {
+    throw_if_cancelled(stop);
     result.push_back(
         read_accessor(document, item_path("", "accessors", result.size()), file, limits));
     // Accessors may share the bytes of their sparse values, so that the file's size is no limit.

@@ -5,6 +5,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -41,8 +42,9 @@ std::uint32_t component_count(ElementType type);
 /// Bytes of one element, tightly packed.
 std::uint32_t element_bytes(ElementType element, ComponentType component);
 
-/// @throws ImportError
-std::vector<Accessor> read_accessors(const GltfFile& file, const ImportLimits& limits);
+/// @throws ImportError, LoadCancelled
+std::vector<Accessor> read_accessors(const GltfFile& file, const ImportLimits& limits,
+                                     const std::stop_token& stop);
 
 /// All elements as float vectors, normalized integers mapped per glTF 3.11; missing components are
 /// 0. For scalars and vectors only.

@@ -55,10 +55,9 @@ void Container::read_chunks() {
   if (text_.empty()) throw ImportError("GLB does not begin with a JSON chunk");
 }
 
-std::vector<std::uint8_t> Container::read_binary(std::uint64_t bytes) const {
-  std::vector<std::uint8_t> result(bytes);
-  file_.read(binary_offset_, result);
-  return result;
+void Container::read_binary(std::uint64_t offset, std::span<std::uint8_t> bytes,
+                            const std::stop_token& stop) const {
+  file_.read(binary_offset_ + offset, bytes, stop);
 }
 
 std::string Container::read_text(std::uint64_t offset, std::uint64_t bytes) const {

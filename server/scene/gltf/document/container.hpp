@@ -2,15 +2,16 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
+#include <stop_token>
 #include <string>
-#include <vector>
 
 #include "scene/regular_file.hpp"
 
 namespace heliograph::scene {
 
 /// A .glb or .gltf file. Of a .glb only the headers and the document are read at once; its binary
-/// chunk is read straight into the buffer that uses it, so that there is no second copy.
+/// chunk is read straight to where it is used, so that there is no second copy.
 class Container {
  public:
   /// @throws ImportError
@@ -20,8 +21,10 @@ class Container {
   std::string take_text() { return std::move(text_); }
   bool has_binary() const { return binary_bytes_ != 0; }
   std::uint64_t binary_bytes() const { return binary_bytes_; }
-  /// The first `bytes` of the binary chunk, which has as many. @throws ImportError
-  std::vector<std::uint8_t> read_binary(std::uint64_t bytes) const;
+  /// Fills `bytes`, which lie within the binary chunk, from `offset`.
+  /// @throws ImportError, LoadCancelled
+  void read_binary(std::uint64_t offset, std::span<std::uint8_t> bytes,
+                   const std::stop_token& stop) const;
 
  private:
   void read_chunks();

@@ -1,32 +1,37 @@
 #include "scene/gltf/document/gltf_file.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "scene/gltf/document/extension_value.hpp"
+#include "scene/gltf/document/image_views.hpp"
 #include "scene/gltf/document/model_parser.hpp"
 #include "scene/gltf/document/uri.hpp"
 #include "scene/gltf/geometry/meshopt.hpp"
 #include "scene/gltf/schema/json_text.hpp"
 #include "scene/gltf/schema/versions.hpp"
+#include "scene/import_error.hpp"
 
 namespace heliograph::scene {
 
 GltfFile::GltfFile(const std::filesystem::path& path, const ImportLimits& limits,
-                   Warnings& warnings)
+                   Warnings& warnings, const std::stop_token& stop)
     : GltfFile(examine_file(path), ConfinedFolder(path.parent_path(), limits.file_bytes),
-               RegularFile(path, limits.file_bytes, "the file"), limits, warnings) {}
+               RegularFile(path, limits.file_bytes, "the file"), limits, warnings, stop) {}
 
-GltfFile::GltfFile(RegularFile file, const ImportLimits& limits, Warnings& warnings)
-    : GltfFile({}, {}, std::move(file), limits, warnings) {}
+GltfFile::GltfFile(RegularFile file, const ImportLimits& limits, Warnings& warnings,
+                   const std::stop_token& stop)
+    : GltfFile({}, {}, std::move(file), limits, warnings, stop) {}
 
 GltfFile::GltfFile(SourceFile self, ConfinedFolder folder, RegularFile file,
-                   const ImportLimits& limits, Warnings& warnings)
-    : self_(std::move(self)),
+                   const ImportLimits& limits, Warnings& warnings, const std::stop_token& stop)
+    : stop_(stop),
+      self_(std::move(self)),
       folder_(std::move(folder)),
       container_(std::move(file)),
       document_(read_document(limits, warnings)),
-      model_(parse_model(document_, [this](std::size_t index) { return read_buffer(index); })) {
+      model_(parse_model(document_)) {
   document_.text = {};
   // tinygltf's last view stands for none.
   model_.bufferViews.pop_back();
@@ -35,13 +40,15 @@ GltfFile::GltfFile(SourceFile self, ConfinedFolder folder, RegularFile file,
       accessor.bufferView = -1;
     }
   }
+  read_buffers();
   read_views(limits);
 }
 
 CheckedDocument GltfFile::read_document(const ImportLimits& limits, Warnings& warnings) {
-  nlohmann::json json = parse_json(container_.take_text(), limits.json_depth, limits.json_values);
+  nlohmann::json json =
+      parse_json(container_.take_text(), limits.json_depth, limits.json_values, stop_);
   check_versions(json, warnings);
-  return check_document(json, limits, warnings);
+  return check_document(json, limits, warnings, stop_);
 }
 
 std::vector<SourceFile> GltfFile::sources() const {
@@ -54,7 +61,7 @@ std::vector<std::uint8_t> GltfFile::resource(const std::string& place) {
   std::string& uri = document_.uris.at(place);
   try {
     auto bytes = decode_data_uri(uri);
-    if (!bytes) return folder_.read(decode_file_uri(uri));
+    if (!bytes) return folder_.read(decode_file_uri(uri), stop_);
     uri = {};
     return std::move(*bytes);
   } catch (const MissingFile& error) {
@@ -64,26 +71,69 @@ std::vector<std::uint8_t> GltfFile::resource(const std::string& place) {
   }
 }
 
-std::vector<std::uint8_t> GltfFile::read_buffer(std::size_t index) {
-  const std::uint64_t length = document_.buffer_lengths[index];
-  const std::string place = item_path("", "buffers", index);
-  const auto check_length = [&](std::uint64_t available) {
-    if (length <= available) return;
-    refuse_at(place, "byteLength",
-              std::to_string(length) + " is more than the " + std::to_string(available) +
-                  " bytes there are");
-  };
-  if (document_.uris.contains(place)) {
-    std::vector<std::uint8_t> bytes = resource(place);
-    check_length(bytes.size());
-    bytes.resize(length);
-    return bytes;
+void GltfFile::read_buffers() {
+  image_views_.resize(model_.bufferViews.size());
+  buffers_.resize(document_.buffer_lengths.size());
+  for (std::size_t index = 0; index < buffers_.size(); ++index) {
+    if (!document_.buffers_with_data[index]) continue;
+    const std::uint64_t length = document_.buffer_lengths[index];
+    const std::string place = item_path("", "buffers", index);
+    const auto check_length = [&](std::uint64_t available) {
+      if (length <= available) return;
+      refuse_at(place, "byteLength",
+                std::to_string(length) + " is more than the " + std::to_string(available) +
+                    " bytes there are");
+    };
+    Bytes& buffer = buffers_[index];
+    if (document_.uris.contains(place)) {
+      buffer.file = resource(place);
+      check_length(buffer.file.size());
+      buffer.all = std::span(buffer.file).first(length);
+      continue;
+    }
+    if (index != 0 || !container_.has_binary()) {
+      refuse_at(place, "has neither a uri nor a GLB binary chunk");
+    }
+    check_length(container_.binary_bytes());
+    image_views_ = find_image_views(model_);
+    for (std::size_t i = 0; i < image_views_.size(); ++i) {
+      if (model_.bufferViews[i].buffer != 0) image_views_[i] = false;
+    }
+    buffer.binary = std::make_unique_for_overwrite<std::uint8_t[]>(length);
+    buffer.all = {buffer.binary.get(), length};
+    read_binary({buffer.binary.get(), length});
   }
-  if (index != 0 || !container_.has_binary()) {
-    refuse_at(place, "has neither a uri nor a GLB binary chunk");
+}
+
+void GltfFile::read_binary(std::span<std::uint8_t> bytes) const {
+  std::vector<std::pair<std::uint64_t, std::uint64_t>> ranges;  // first byte, and the one after
+  for (std::size_t i = 0; i < image_views_.size(); ++i) {
+    const tinygltf::BufferView& view = model_.bufferViews[i];
+    if (const auto packed = find_extension(view.extensions, "EXT_meshopt_compression", "")) {
+      const std::uint64_t first = packed->integer("byteOffset").value_or(0);
+      if (packed->integer("buffer") == 0u) {
+        ranges.emplace_back(first, first + *packed->integer("byteLength"));
+      }
+    } else if (view.buffer == 0 && !image_views_[i]) {
+      ranges.emplace_back(view.byteOffset, view.byteOffset + view.byteLength);
+    }
   }
-  check_length(container_.binary_bytes());
-  return container_.read_binary(length);
+  std::ranges::sort(ranges);
+  std::uint64_t done = 0;
+  for (const auto& [first, end] : ranges) {
+    const std::uint64_t from = std::max(first, done);
+    if (from >= end) continue;
+    container_.read_binary(from, bytes.subspan(from, end - from), stop_);
+    done = end;
+  }
+}
+
+std::vector<std::uint8_t> GltfFile::image_file(std::uint32_t view) const {
+  if (!image_views_[view]) return {views_[view].bytes.begin(), views_[view].bytes.end()};
+  const tinygltf::BufferView& source = model_.bufferViews[view];
+  std::vector<std::uint8_t> bytes(source.byteLength);
+  container_.read_binary(source.byteOffset, bytes, stop_);
+  return bytes;
 }
 
 void GltfFile::read_views(const ImportLimits& limits) {
@@ -95,6 +145,7 @@ void GltfFile::read_views(const ImportLimits& limits) {
 }
 
 BufferView GltfFile::read_view(std::size_t index, std::uint64_t& unpacked_budget) {
+  throw_if_cancelled(stop_);
   const tinygltf::BufferView& view = model_.bufferViews[index];
   const auto stride = static_cast<std::uint32_t>(view.byteStride);
   const std::string place = item_path("", "bufferViews", index);
@@ -102,8 +153,9 @@ BufferView GltfFile::read_view(std::size_t index, std::uint64_t& unpacked_budget
     if (!document_.buffers_with_data[buffer]) {
       refuse_at(place, "buffer", "refers to a buffer without data");
     }
-    return std::span(model_.buffers[buffer].data).subspan(offset, length);
+    return buffers_[buffer].all.subspan(offset, length);
   };
+  if (image_views_[index]) return {{}, stride};
   if (const auto packed = find_extension(view.extensions, "EXT_meshopt_compression", place)) {
     const auto source =
         bytes_of(*packed->integer("buffer"), packed->integer("byteOffset").value_or(0),

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -24,19 +26,24 @@ struct BufferView {
 
 /// A glTF document with its bytes, in three steps: every member is checked against the table of
 /// `schema.hpp`, tinygltf parses what has passed, and buffer views are unpacked. tinygltf alone
-/// narrows numbers and replaces values of a wrong type.
+/// narrows numbers and replaces values of a wrong type. Files of images in the binary chunk of a
+/// .glb are read on demand, straight to where they stay.
 class GltfFile {
  public:
-  /// @throws ImportError
-  GltfFile(const std::filesystem::path& path, const ImportLimits& limits, Warnings& warnings);
-  /// A file that is alone: others that it refers to are missing. @throws ImportError
-  GltfFile(RegularFile file, const ImportLimits& limits, Warnings& warnings);
+  /// @throws ImportError, LoadCancelled
+  GltfFile(const std::filesystem::path& path, const ImportLimits& limits, Warnings& warnings,
+           const std::stop_token& stop);
+  /// A file that is alone: others that it refers to are missing. @throws ImportError, LoadCancelled
+  GltfFile(RegularFile file, const ImportLimits& limits, Warnings& warnings,
+           const std::stop_token& stop);
   GltfFile(const GltfFile&) = delete;
   GltfFile& operator=(const GltfFile&) = delete;
 
   /// Valid as long as this object. References have been checked, but not what they refer to.
   const tinygltf::Model& model() const { return model_; }
   const std::vector<BufferView>& views() const { return views_; }
+  /// The file of an image within a view. @throws ImportError, LoadCancelled
+  std::vector<std::uint8_t> image_file(std::uint32_t view) const;
   /// Bytes behind the "uri" of the object at `place`: base64 data or a file beside the scene.
   /// @throws ImportError
   std::vector<std::uint8_t> resource(const std::string& place);
@@ -45,17 +52,28 @@ class GltfFile {
 
  private:
   GltfFile(SourceFile self, ConfinedFolder folder, RegularFile file, const ImportLimits& limits,
-           Warnings& warnings);
+           Warnings& warnings, const std::stop_token& stop);
   CheckedDocument read_document(const ImportLimits& limits, Warnings& warnings);
-  std::vector<std::uint8_t> read_buffer(std::size_t index);
+  void read_buffers();
+  /// The bytes that views of the binary chunk need, less the files of images.
+  void read_binary(std::span<std::uint8_t> bytes) const;
   void read_views(const ImportLimits& limits);
   BufferView read_view(std::size_t index, std::uint64_t& unpacked_budget);
 
+  std::stop_token stop_;
   SourceFile self_;
   ConfinedFolder folder_;
   Container container_;
   CheckedDocument document_;
   tinygltf::Model model_;
+  /// Of a buffer. What nothing reads of the binary chunk is not written, and takes no memory.
+  struct Bytes {
+    std::vector<std::uint8_t> file;
+    std::unique_ptr<std::uint8_t[]> binary;
+    std::span<const std::uint8_t> all;
+  };
+  std::vector<Bytes> buffers_;
+  std::vector<bool> image_views_;  // in the binary chunk
   std::vector<std::vector<std::uint8_t>> unpacked_views_;
   std::vector<BufferView> views_;
 };

@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "scene/gltf/geometry/tangents.hpp"
+#include "scene/import_error.hpp"
 
 namespace heliograph::scene {
 namespace {
@@ -50,7 +51,8 @@ void store_color(Vertex& vertex, const glm::vec4& color) {
   vertex.color_ba = glm::packUnorm2x16({color.z, color.w});
 }
 
-std::vector<Vertex> read_vertices(const Primitive& primitive, std::span<const Accessor> accessors) {
+std::vector<Vertex> read_vertices(const Primitive& primitive, std::span<const Accessor> accessors,
+                                  const std::stop_token& stop) {
   const std::vector<glm::vec3> positions = read_vectors<3>(accessors[primitive.position]);
   std::vector<Vertex> vertices(positions.size());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -59,6 +61,7 @@ std::vector<Vertex> read_vertices(const Primitive& primitive, std::span<const Ac
   }
   const auto fill = [&]<int components>(std::optional<std::uint32_t> accessor, auto store) {
     if (!accessor) return;
+    throw_if_cancelled(stop);
     const auto values = read_vectors<components>(accessors[*accessor]);
     for (std::size_t i = 0; i < vertices.size(); ++i) store(vertices[i], values[i]);
   };
@@ -145,26 +148,31 @@ std::vector<std::uint32_t> trace_back(const Mesh& mesh, std::span<const std::uin
 }  // namespace
 
 BuiltMesh build_mesh(const Primitive& primitive, std::span<const Accessor> accessors,
-                     std::uint32_t material, std::span<const shared::Material> materials) {
+                     std::uint32_t material, std::span<const shared::Material> materials,
+                     const std::stop_token& stop) {
   BuiltMesh built;
   Mesh& mesh = built.mesh;
   mesh.name = primitive.name;
   mesh.material = material;
   mesh.indices = read_triangles(primitive, accessors);
-  mesh.vertices = read_vertices(primitive, accessors);
-  const std::vector<std::uint32_t> corners = mesh.indices;
+  throw_if_cancelled(stop);
+  mesh.vertices = read_vertices(primitive, accessors, stop);
+  throw_if_cancelled(stop);
+  const std::vector<std::uint32_t> corners =
+      primitive.deforms() ? mesh.indices : std::vector<std::uint32_t>();
   if (primitive.normal) {
     normalize_normals(mesh.vertices, mesh.indices);
   } else {
     make_flat(mesh.vertices, mesh.indices);
   }
+  throw_if_cancelled(stop);
   // Tangents without normals are ignored (glTF 3.7.2.1).
   const bool has_tangents = primitive.tangent && primitive.normal;
   const shared::TextureSlot& normal_map = materials[material].normal_texture;
   if (has_tangents || normal_map.texture == shared::no_texture) {
     orthonormalize_tangents(mesh.vertices);
   } else {
-    generate_tangents(mesh.vertices, mesh.indices, normal_map);
+    generate_tangents(mesh.vertices, mesh.indices, normal_map, stop);
   }
   for (const std::uint32_t index : mesh.indices) mesh.bounds.include(mesh.vertices[index].position);
   if (primitive.deforms()) built.sources = trace_back(mesh, corners);

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "scene/gltf/document/accessors.hpp"
@@ -18,8 +19,9 @@ struct BuiltMesh {
 /// Reads one primitive's triangles. Missing normals become face normals (glTF 3.7.2.1); missing
 /// tangents are generated for `material`'s normal map, or arbitrary without one. `material` is an
 /// index into `materials`.
-/// @throws ImportError when an index is out of range or a number is not finite
+/// @throws ImportError when an index is out of range or a number is not finite, LoadCancelled
 BuiltMesh build_mesh(const Primitive& primitive, std::span<const Accessor> accessors,
-                     std::uint32_t material, std::span<const shared::Material> materials);
+                     std::uint32_t material, std::span<const shared::Material> materials,
+                     const std::stop_token& stop);
 
 }  // namespace heliograph::scene

@@ -5,6 +5,7 @@
 #include "scene/gltf/document/extension_value.hpp"
 #include "scene/gltf/document/variants.hpp"
 #include "scene/gltf/geometry/draco.hpp"
+#include "scene/import_error.hpp"
 #include "scene/scene.hpp"
 
 namespace heliograph::scene {
@@ -234,13 +235,15 @@ class PrimitiveReader {
 
 PrimitiveTable read_primitives(const GltfFile& file, std::span<const Accessor> accessors,
                                std::optional<std::uint32_t> variant, const ImportLimits& limits,
-                               ByteBudget& budget, Warnings& warnings) {
+                               ByteBudget& budget, Warnings& warnings,
+                               const std::stop_token& stop) {
   PrimitiveTable table;
   PrimitiveReader reader(file, accessors, variant, limits, budget, warnings);
   for (const tinygltf::Mesh& mesh : file.model().meshes) {
     const std::string path = item_path("", "meshes", table.of_mesh.size());
     std::vector<std::uint32_t>& members = table.of_mesh.emplace_back();
     for (std::size_t i = 0; i < mesh.primitives.size(); ++i) {
+      throw_if_cancelled(stop);
       auto primitive = reader.read(mesh.primitives[i], item_path(path, "primitives", i));
       if (!primitive) continue;
       primitive->name =

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -74,9 +75,9 @@ struct PrimitiveTable {
 
 /// Points and lines are left out with a warning. Materials are those of `variant` if given. Charges
 /// `budget` with the memory of the geometry.
-/// @throws ImportError
+/// @throws ImportError, LoadCancelled
 PrimitiveTable read_primitives(const GltfFile& file, std::span<const Accessor> accessors,
                                std::optional<std::uint32_t> variant, const ImportLimits& limits,
-                               ByteBudget& budget, Warnings& warnings);
+                               ByteBudget& budget, Warnings& warnings, const std::stop_token& stop);
 
 }  // namespace heliograph::scene

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 
+#include "scene/import_error.hpp"
+
 namespace heliograph::scene {
 namespace {
 
@@ -42,11 +44,12 @@ std::uint64_t hash_of(const WeldKey& key) {
 
 // For each vertex the first one that equals it: an open-addressing table of vertex numbers.
 std::vector<std::uint32_t> weld(const std::vector<shared::Vertex>& vertices,
-                                const std::vector<glm::vec2>& uvs) {
+                                const std::vector<glm::vec2>& uvs, const std::stop_token& stop) {
   const std::size_t slot_count = std::bit_ceil(2 * vertices.size() + 1);
   std::vector<std::uint32_t> table(slot_count, none);
   std::vector<std::uint32_t> first(vertices.size());
   for (std::uint32_t i = 0; i < vertices.size(); ++i) {
+    throw_if_cancelled(stop, i);
     const WeldKey key = weld_key(vertices[i], uvs[i]);
     std::size_t slot = hash_of(key) & (slot_count - 1);
     while (table[slot] != none && weld_key(vertices[table[slot]], uvs[table[slot]]) != key) {
@@ -98,21 +101,28 @@ float corner_angle(const glm::vec3& to_previous, const glm::vec3& to_next,
 class TangentBuilder {
  public:
   TangentBuilder(std::vector<shared::Vertex>& vertices, std::vector<std::uint32_t>& indices,
-                 const shared::TextureSlot& normal_map)
-      : vertices_(vertices), indices_(indices) {
+                 const shared::TextureSlot& normal_map, const std::stop_token& stop)
+      : vertices_(vertices), indices_(indices), stop_(stop) {
     uvs_.reserve(vertices.size());
     for (const shared::Vertex& vertex : vertices)
       uvs_.push_back(transformed_uv(vertex, normal_map));
-    welded_ = weld(vertices, uvs_);
+    welded_ = weld(vertices, uvs_, stop);
     sums_.resize(2 * vertices.size(), glm::vec3(0.0f));
   }
 
   void build() {
     std::vector<Hand> face_hands;
     face_hands.reserve(indices_.size() / 3);
-    for (std::size_t i = 0; i + 2 < indices_.size(); i += 3) face_hands.push_back(accumulate(i));
+    for (std::size_t i = 0; i + 2 < indices_.size(); i += 3) {
+      throw_if_cancelled(stop_, i);
+      face_hands.push_back(accumulate(i));
+    }
+    throw_if_cancelled(stop_);
     split_by_hand(face_hands);
-    for (std::uint32_t i = 0; i < vertices_.size(); ++i) finish(i);
+    for (std::uint32_t i = 0; i < vertices_.size(); ++i) {
+      throw_if_cancelled(stop_, i);
+      finish(i);
+    }
   }
 
  private:
@@ -177,6 +187,7 @@ class TangentBuilder {
 
   std::vector<shared::Vertex>& vertices_;
   std::vector<std::uint32_t>& indices_;
+  const std::stop_token& stop_;
   std::vector<glm::vec2> uvs_;
   std::vector<std::uint32_t> welded_;
   std::vector<glm::vec3> sums_;  // two per welded vertex: right- and left-handed
@@ -186,8 +197,8 @@ class TangentBuilder {
 }  // namespace
 
 void generate_tangents(std::vector<shared::Vertex>& vertices, std::vector<std::uint32_t>& indices,
-                       const shared::TextureSlot& normal_map) {
-  TangentBuilder(vertices, indices, normal_map).build();
+                       const shared::TextureSlot& normal_map, const std::stop_token& stop) {
+  TangentBuilder(vertices, indices, normal_map, stop).build();
 }
 
 glm::vec3 perpendicular_to(const glm::vec3& normal) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <stop_token>
 #include <vector>
 
 #include "shaders/shared/scene.h"
@@ -15,8 +16,9 @@ namespace heliograph::scene {
 /// the sum. Vertices used with both hands are split, so `vertices` may grow and `indices` change.
 /// The bitangent is cross(normal, tangent) * tangent.w and points where texture v decreases (up).
 /// Normals must be of unit length. `normal_map` says which uv set and transform the texture uses.
+/// @throws LoadCancelled
 void generate_tangents(std::vector<shared::Vertex>& vertices, std::vector<std::uint32_t>& indices,
-                       const shared::TextureSlot& normal_map);
+                       const shared::TextureSlot& normal_map, const std::stop_token& stop = {});
 
 /// Any unit vector perpendicular to the unit vector `normal`.
 glm::vec3 perpendicular_to(const glm::vec3& normal);

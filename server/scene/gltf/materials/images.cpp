@@ -3,15 +3,19 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <map>
 
 #include "scene/first_failure.hpp"
 #include "scene/gltf/document/extension_value.hpp"
 #include "scene/image/image_decoder.hpp"
 #include "scene/image/mipmaps.hpp"
+#include "scene/import_error.hpp"
 #include "scene/quote.hpp"
 
 namespace heliograph::scene {
 namespace {
+
+using ImageBytes = std::vector<std::uint8_t>;
 
 [[noreturn]] void refuse(const ImageSource& source, const std::string& reason) {
   throw ImportError(source.path + (source.name.empty() ? "" : " " + in_quotes(source.name)) + " " +
@@ -61,30 +65,11 @@ std::vector<ImageSize> probe_images(std::span<const ImageSource> sources,
   return sizes;
 }
 
-using SharedFile = std::shared_ptr<const std::vector<std::uint8_t>>;
-
-/// The encoded files of the images in use; those in buffers are copied, because buffers are
-/// released.
-std::vector<SharedFile> share_files(std::span<const ImageSource> sources,
-                                    std::span<const ImageUse> uses) {
-  std::vector<SharedFile> files(sources.size());
-  for (const ImageUse& use : uses) {
-    if (use.conversion) continue;
-    const ImageSource& source = sources[use.source];
-    SharedFile& file = files[use.source];
-    if (!file) file = source.file;
-    if (!file) {
-      file = std::make_shared<const std::vector<std::uint8_t>>(source.bytes.begin(),
-                                                               source.bytes.end());
-    }
-  }
-  return files;
-}
-
 /// Fills all levels of an image whose size is known.
-void decode_levels(Image& image) {
+void decode_levels(Image& image, const std::stop_token& stop) {
   image.pixels.resize(mip_chain_bytes(image.width, image.height));
   decode_image(*image.file, {image.width, image.height}, image.pixels);
+  throw_if_cancelled(stop);
   fill_mip_chain(image);
 }
 
@@ -113,8 +98,8 @@ void convert_levels(std::span<const ImageSource> sources, const ImageConversion&
   fill_mip_chain(image);
 }
 
-Image decode(std::span<const ImageSource> sources, const ImageUse& use,
-             std::span<const SharedFile> files, ImageSize size) {
+Image decode(std::span<const ImageSource> sources, const ImageUse& use, ImageSize size,
+             const std::stop_token& stop) {
   Image image;
   image.name = sources[use.source].name;
   image.width = size.width;
@@ -124,10 +109,21 @@ Image decode(std::span<const ImageSource> sources, const ImageUse& use,
   if (use.conversion) {
     convert_levels(sources, *use.conversion, image);
   } else {
-    image.file = files[use.source];
-    decode_levels(image);
+    image.file = sources[use.source].file;
+    decode_levels(image, stop);
   }
   return image;
+}
+
+/// The longest side of levels that stay of images of such sizes.
+std::uint32_t kept_side(std::span<const ImageSize> sizes, const KeptTextures& kept) {
+  std::vector<Image> images(sizes.size());
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    images[i].width = sizes[i].width;
+    images[i].height = sizes[i].height;
+    images[i].levels = mip_level_count(sizes[i].width, sizes[i].height);
+  }
+  return longest_side_that_fits(images, kept).value_or(1);
 }
 
 Image white_texel(const ImageSource& source, bool srgb) {
@@ -149,18 +145,32 @@ std::vector<std::uint32_t> ImageUse::sources() const {
   return result;
 }
 
-std::vector<ImageSource> read_image_sources(GltfFile& file, const ImportLimits& limits) {
+std::vector<ImageSource> read_image_sources(GltfFile& file, const ImportLimits& limits,
+                                            const std::stop_token& stop) {
   std::vector<ImageSource> result;
+  std::map<std::uint32_t, std::shared_ptr<const ImageBytes>> known;  // by view
+  std::uint64_t bytes = 0;
   for (const tinygltf::Image& image : file.model().images) {
+    throw_if_cancelled(stop);
     ImageSource& source = result.emplace_back();
     source.path = item_path("", "images", result.size() - 1);
     source.name = image.name;
     if (const auto view = to_index(image.bufferView)) {
-      source.bytes = file.views()[*view].bytes;
+      source.file = known[*view];
+      if (!source.file) {
+        // Views may overlap, so that the file's size is no limit.
+        bytes += file.model().bufferViews[*view].byteLength;
+        if (bytes > limits.file_bytes) {
+          throw ImportError(source.path + ": the images have more than the " +
+                            std::to_string(limits.file_bytes) + " bytes of the limit on files");
+        }
+        known[*view] = source.file = std::make_shared<const ImageBytes>(file.image_file(*view));
+      }
+      source.bytes = *source.file;
       continue;
     }
     try {
-      source.file = std::make_shared<const std::vector<std::uint8_t>>(file.resource(source.path));
+      source.file = std::make_shared<const ImageBytes>(file.resource(source.path));
       source.bytes = *source.file;
     } catch (const MissingFile& error) {
       if (limits.strict_assets) throw;
@@ -171,12 +181,13 @@ std::vector<ImageSource> read_image_sources(GltfFile& file, const ImportLimits& 
 }
 
 DecodedImages decode_images(std::span<const ImageSource> sources, std::span<const ImageUse> uses,
-                            const ImportLimits& limits, const std::function<void()>& decoded) {
+                            const KeptLevels& kept, const ImportLimits& limits,
+                            const std::stop_token& stop, const std::function<void()>& decoded) {
   DecodedImages result;
   result.images.resize(uses.size());
   result.problems.resize(uses.size());
   const std::vector<ImageSize> sizes = probe_images(sources, uses, limits, result.problems);
-  const std::vector<SharedFile> files = share_files(sources, uses);
+  result.kept_side = kept_side(sizes, kept.textures);
   FirstFailure failure;
   tbb::parallel_for(std::size_t(0), uses.size(), [&](std::size_t i) {
     failure.guard([&] {
@@ -184,9 +195,10 @@ DecodedImages decode_images(std::span<const ImageSource> sources, std::span<cons
       std::string& problem = result.problems[i];
       if (problem.empty()) {
         problem = try_image(sources[source], limits,
-                            [&] { result.images[i] = decode(sources, uses[i], files, sizes[i]); });
+                            [&] { result.images[i] = decode(sources, uses[i], sizes[i], stop); });
       }
       if (!problem.empty()) result.images[i] = white_texel(sources[source], uses[i].srgb);
+      if (!kept.whole[i]) drop_large_levels(result.images[i], result.kept_side);
       decoded();
     });
   });
@@ -194,10 +206,22 @@ DecodedImages decode_images(std::span<const ImageSource> sources, std::span<cons
   return result;
 }
 
-ImagePixels::ImagePixels(const Image& image) : pixels_(image.pixels) {
-  if (!image.pixels.empty() || !image.file) return;
+void drop_large_levels(Image& image, std::uint32_t longest_side) {
+  if (!image.file || image.pixels.empty()) return;
+  const std::uint32_t before = first_level_in(image, image.pixels.size());
+  const std::uint32_t first = first_level_within(image, longest_side);
+  if (first <= before) return;
+  const auto kept =
+      std::span(image.pixels).subspan(level_offset(image, first) - level_offset(image, before));
+  image.pixels = std::vector<std::uint8_t>(kept.begin(), kept.end());
+}
+
+ImagePixels::ImagePixels(const Image& image, std::uint32_t first) : pixels_(image.pixels) {
+  const bool enough = !pixels_.empty() && first_level_in(image, pixels_.size()) <= first;
+  if (enough || !image.file) return;
   Image again = image;
-  decode_levels(again);
+  again.pixels = {};
+  decode_levels(again, {});
   decoded_ = std::move(again.pixels);
   pixels_ = decoded_;
 }

@@ -5,11 +5,13 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <vector>
 
 #include "scene/gltf/document/gltf_file.hpp"
 #include "scene/gltf/materials/specular_glossiness.hpp"
+#include "scene/image/mipmaps.hpp"
 #include "scene/scene.hpp"
 
 namespace heliograph::scene {
@@ -18,9 +20,9 @@ namespace heliograph::scene {
 struct ImageSource {
   std::string path;  // for errors: "images[2]"
   std::string name;
-  std::shared_ptr<const std::vector<std::uint8_t>> file;  // when not part of a buffer
-  std::span<const std::uint8_t> bytes;
-  std::string problem;  // why there are no bytes
+  std::shared_ptr<const std::vector<std::uint8_t>> file;
+  std::span<const std::uint8_t> bytes;  // of `file`
+  std::string problem;                  // why there are no bytes
 };
 
 /// An image that is computed from two others of the specular-glossiness model.
@@ -42,26 +44,39 @@ struct ImageUse {
   std::vector<std::uint32_t> sources() const;
 };
 
-/// @throws ImportError
-std::vector<ImageSource> read_image_sources(GltfFile& file, const ImportLimits& limits);
+/// @throws ImportError, LoadCancelled
+std::vector<ImageSource> read_image_sources(GltfFile& file, const ImportLimits& limits,
+                                            const std::stop_token& stop);
 
 /// The images of all uses. Those that are missing or damaged are one white texel, unless assets are
 /// strict.
 struct DecodedImages {
   std::vector<Image> images;
   std::vector<std::string> problems;  // per image; empty: none
+  std::uint32_t kept_side = 0;        // the longest of the levels that stay
+};
+
+/// Which levels of decoded images stay.
+struct KeptLevels {
+  KeptTextures textures;    // of images with a file
+  std::vector<bool> whole;  // per use: all levels stay
 };
 
 /// Decodes every use, with mip levels, in parallel. `decoded` is called after each, on any thread.
-/// @throws ImportError when a limit is exceeded, and with strict assets when an image is damaged
+/// @throws ImportError when a limit is exceeded, and with strict assets when an image is damaged;
+/// LoadCancelled
 DecodedImages decode_images(std::span<const ImageSource> sources, std::span<const ImageUse> uses,
-                            const ImportLimits& limits, const std::function<void()>& decoded);
+                            const KeptLevels& kept, const ImportLimits& limits,
+                            const std::stop_token& stop, const std::function<void()>& decoded);
 
-/// All levels of an image, decoded again if its pixels were released.
+/// Removes the levels of an image whose sides are longer, if it has a file.
+void drop_large_levels(Image& image, std::uint32_t longest_side);
+
+/// Levels of an image, decoded again if its pixels were released.
 class ImagePixels {
  public:
-  /// `image` outlives this.
-  explicit ImagePixels(const Image& image);
+  /// `image` outlives this. Levels from `first` on are needed, and there may be more.
+  ImagePixels(const Image& image, std::uint32_t first);
 
   std::span<const std::uint8_t> get() const { return pixels_; }
 

@@ -8,6 +8,7 @@
 
 #include "scene/gltf/document/extension_value.hpp"
 #include "scene/gltf/nodes/instancing.hpp"
+#include "scene/import_error.hpp"
 
 namespace heliograph::scene {
 namespace {
@@ -240,7 +241,7 @@ void add_places(NodeTable& table) {
 
 NodeTable read_nodes(const tinygltf::Model& model, std::span<const Accessor> accessors,
                      std::optional<std::uint32_t> shown, const ImportLimits& limits,
-                     Warnings& warnings) {
+                     Warnings& warnings, const std::stop_token& stop) {
   if (model.nodes.size() > limits.nodes) {
     throw ImportError("nodes: " + std::to_string(model.nodes.size()) + " exceed the limit of " +
                       std::to_string(limits.nodes));
@@ -250,6 +251,7 @@ NodeTable read_nodes(const tinygltf::Model& model, std::span<const Accessor> acc
   nodes.reserve(model.nodes.size());
   std::uint64_t weights = 0;
   for (const tinygltf::Node& document : model.nodes) {
+    throw_if_cancelled(stop, nodes.size());
     nodes.push_back(read_node(document, item_path("", "nodes", nodes.size()), context));
     context.instances -= nodes.back().attachments.instance_transforms.size();
     weights += nodes.back().node.weights.size();

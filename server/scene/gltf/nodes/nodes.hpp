@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include "scene/gltf/document/accessors.hpp"
@@ -37,9 +38,9 @@ struct NodeTable {
 /// `shown`, or all where there is none. A node that a scene lists although its parent is shown
 /// stays where its parent puts it. A node with mesh instances gets one child per instance. Nodes
 /// that are not visible, and those below them, keep their cameras only.
-/// @throws ImportError
+/// @throws ImportError, LoadCancelled
 NodeTable read_nodes(const tinygltf::Model& model, std::span<const Accessor> accessors,
                      std::optional<std::uint32_t> shown, const ImportLimits& limits,
-                     Warnings& warnings);
+                     Warnings& warnings, const std::stop_token& stop);
 
 }  // namespace heliograph::scene

@@ -12,6 +12,7 @@
 #include "scene/gltf/schema/document_text.hpp"
 #include "scene/gltf/schema/place.hpp"
 #include "scene/gltf/schema/schema.hpp"
+#include "scene/import_error.hpp"
 
 namespace heliograph::scene {
 namespace {
@@ -47,8 +48,9 @@ std::string plain(double value) {
 
 class Checker {
  public:
-  Checker(json& document, const ImportLimits& limits, Warnings& warnings)
-      : document_(document), budget_(limits.scene_bytes), warnings_(warnings) {}
+  Checker(json& document, const ImportLimits& limits, Warnings& warnings,
+          const std::stop_token& stop)
+      : document_(document), budget_(limits.scene_bytes), warnings_(warnings), stop_(stop) {}
 
   CheckedDocument check() {
     for (const TableSource& source : table_sources()) {
@@ -127,7 +129,8 @@ class Checker {
     if (type.extras) extras(value, type, place);
     if (type.rule) type.rule(value, *place, document_);
     text_.close('}');
-    if (type.holds_bytes && !keep_buffer(value, *place)) {
+    if (type.holds_bytes) {
+      note_buffer(value, *place);
       text_.rewind(start);
       text_.raw(R"({"byteLength":1,"uri":"none"})");
     }
@@ -179,8 +182,8 @@ class Checker {
     object(*found, with ? *type.extras_with.type : *type.extras, &at);
   }
 
-  /// Whether a buffer has data that a view refers to.
-  bool keep_buffer(const json& buffer, const Place& place) {
+  /// Its length, and whether it has data that a view refers to.
+  void note_buffer(const json& buffer, const Place& place) {
     const std::size_t index = *place.index;
     const auto extensions = buffer.find("extensions");
     const bool fallback =
@@ -189,7 +192,6 @@ class Checker {
     if (!used_[index]) warnings_.add(place.text() + " is used by nothing and was not read");
     result_.buffer_lengths.push_back(*as_integer(buffer.at("byteLength")));
     result_.buffers_with_data.push_back(used_[index] && !fallback);
-    return result_.buffers_with_data.back();
   }
 
   void check(json& value, const Member& member, const Place& place) {
@@ -229,6 +231,7 @@ class Checker {
     if (value.size() < member.least_items) fail_at(&place, "must not be empty");
     text_.open('[');
     for (std::size_t i = 0; i < value.size(); ++i) {
+      throw_if_cancelled(stop_, i);
       const Place at{place.owner, place.member, i};
       item(value[i], member, of_numbers || member.kind == Kind::indices ? place : at, reason);
     }
@@ -347,6 +350,7 @@ class Checker {
   json& document_;
   ByteBudget budget_;
   Warnings& warnings_;
+  const std::stop_token& stop_;
   CheckedDocument result_;
   DocumentText text_;
   std::array<std::size_t, static_cast<std::size_t>(Table::count)> counts_{};
@@ -357,8 +361,9 @@ class Checker {
 
 }  // namespace
 
-CheckedDocument check_document(json& document, const ImportLimits& limits, Warnings& warnings) {
-  return Checker(document, limits, warnings).check();
+CheckedDocument check_document(json& document, const ImportLimits& limits, Warnings& warnings,
+                               const std::stop_token& stop) {
+  return Checker(document, limits, warnings, stop).check();
 }
 
 }  // namespace heliograph::scene

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,8 @@ struct CheckedDocument {
 
 /// Checks every member of a document against the table of `schema.hpp`. An error names the place:
 /// "nodes[3].mesh: 7 is not an index into 2 meshes". Takes the addresses out of `document`.
-/// @throws ImportError
+/// @throws ImportError, LoadCancelled
 CheckedDocument check_document(nlohmann::json& document, const ImportLimits& limits,
-                               Warnings& warnings);
+                               Warnings& warnings, const std::stop_token& stop);
 
 }  // namespace heliograph::scene

@@ -1,5 +1,7 @@
 #include "scene/gltf/schema/json_text.hpp"
 
+#include <cstddef>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -10,12 +12,14 @@ namespace {
 
 using nlohmann::json;
 
-void check_shape(std::string_view text, std::uint32_t max_depth, std::uint64_t max_values) {
+void check_shape(std::string_view text, std::uint32_t max_depth, std::uint64_t max_values,
+                 const std::stop_token& stop) {
   std::uint32_t depth = 0;
   std::uint64_t values = 1;
   bool in_string = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
     const char c = text[i];
+    throw_if_cancelled(stop, i);
     if (in_string) {
       if (c == '\\') {
         ++i;
@@ -37,12 +41,41 @@ void check_shape(std::string_view text, std::uint32_t max_depth, std::uint64_t m
   }
 }
 
+/// Iterates over a text, and ends a parser that is to stop.
+class CancellableText {
+ public:
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  CancellableText(const char* at, const std::stop_token& stop) : at_(at), stop_(&stop) {}
+  reference operator*() const { return *at_; }
+  CancellableText& operator++() {
+    throw_if_cancelled(*stop_, reinterpret_cast<std::uintptr_t>(++at_));
+    return *this;
+  }
+  CancellableText operator++(int) {
+    const CancellableText before = *this;
+    ++*this;
+    return before;
+  }
+  bool operator==(const CancellableText& other) const { return at_ == other.at_; }
+
+ private:
+  const char* at_;
+  const std::stop_token* stop_;
+};
+
 }  // namespace
 
-json parse_json(std::string_view text, std::uint32_t max_depth, std::uint64_t max_values) {
-  check_shape(text, max_depth, max_values);
+json parse_json(std::string_view text, std::uint32_t max_depth, std::uint64_t max_values,
+                const std::stop_token& stop) {
+  check_shape(text, max_depth, max_values, stop);
   try {
-    json document = json::parse(text);
+    json document = json::parse(CancellableText(text.data(), stop),
+                                CancellableText(text.data() + text.size(), stop));
     if (!document.is_object()) throw ImportError("not a glTF file: the JSON is not an object");
     return document;
   } catch (const json::parse_error& error) {

@@ -169,7 +169,7 @@ struct ObjectType {
   /// Checks what concerns several members, which have been checked. @throws ImportError
   void (*rule)(const nlohmann::json& object, const Place& place,
                const nlohmann::json& document) = nullptr;
-  bool holds_bytes = false;  // a buffer: tinygltf is given a stand-in where it has no data
+  bool holds_bytes = false;  // a buffer: tinygltf is given a stand-in
 };
 
 /// Where an array stands that indices refer to: names of members from the document's root.

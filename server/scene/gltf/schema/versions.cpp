@@ -34,8 +34,10 @@ constexpr std::array<std::string_view, 19> supported_extensions = {
     "KHR_texture_transform",
 };
 
-/// A scene without them is complete: animations of single properties, and what pointers may do.
-constexpr std::array<std::string_view, 3> harmless_extensions = {
+/// A scene without them is complete: light from around it, which every scene has of its own choice,
+/// animations of single properties, and what pointers may do.
+constexpr std::array<std::string_view, 4> harmless_extensions = {
+    "EXT_lights_image_based",
     "KHR_animation_pointer",
     "KHR_node_hoverability",
     "KHR_node_selectability",

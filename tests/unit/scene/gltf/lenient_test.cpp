@@ -121,6 +121,31 @@ TEST(Lenient, AnimationsOfPointersAreLeftOutEvenWhereRequired) {
   EXPECT_TRUE(warns(scene, "animations of other properties"));
 }
 
+TEST(Lenient, LightFromAroundAFileIsLeftOutEvenWhereRequired) {
+  GltfBuilder builder = everything();
+  builder.json["extensionsUsed"].push_back("EXT_lights_image_based");
+  builder.json["extensionsRequired"] = {"EXT_lights_image_based"};
+  builder.json["extensions"]["EXT_lights_image_based"]["lights"] = {{{"intensity", 2}}};
+  builder.json["scenes"][0]["extensions"]["EXT_lights_image_based"]["light"] = 0;
+  EXPECT_TRUE(warns(builder.import(), "\"EXT_lights_image_based\" is ignored"));
+}
+
+TEST(Lenient, OtherMaterialExtensionsAreLeftOutUnlessRequired) {
+  for (const std::string extension :
+       {"KHR_materials_anisotropy", "KHR_materials_diffuse_transmission",
+        "KHR_materials_dispersion", "KHR_materials_iridescence"}) {
+    GltfBuilder builder = everything();
+    builder.json["extensionsUsed"].push_back(extension);
+    builder.json["materials"][0]["extensions"][extension] = {{"anisotropyStrength", 0.5},
+                                                             {"diffuseTransmissionFactor", 0.5},
+                                                             {"dispersion", 0.5},
+                                                             {"iridescenceFactor", 0.5}};
+    EXPECT_TRUE(warns(builder.import(), '"' + extension + "\" is ignored"));
+    builder.json["extensionsRequired"] = {extension};
+    EXPECT_NE(refusal_of(builder).find("not supported: \"" + extension + '"'), std::string::npos);
+  }
+}
+
 TEST(Strict, PositionsOfIntegersNeedTheExtension) {
   GltfBuilder builder = triangle();
   const auto view = builder.add_view(Bytes{0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0}, 4);

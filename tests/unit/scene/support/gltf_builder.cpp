@@ -132,7 +132,7 @@ Bytes GltfBuilder::glb() const {
 
 Scene GltfBuilder::import(const ImportLimits& limits, const SceneChoice& choice) const {
   const TemporaryFolder folder;
-  return import_gltf(folder.write("scene.glb", glb()), limits, {}, nullptr, choice);
+  return import_gltf(folder.write("scene.glb", glb()), limits, {.choice = choice});
 }
 
 GltfBuilder triangle() {
