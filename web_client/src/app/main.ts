@@ -8,6 +8,7 @@ import { createRenderDialog } from "../output/render_dialog.ts";
 import { reportToEmbeddingPage } from "../embed/embedding_page.ts";
 import { mountFirstHint } from "../overlay/first_hint.ts";
 import { createHelp } from "../overlay/help.ts";
+import { mountMarks } from "../overlay/marks.ts";
 import { mountMjpegFallback } from "../overlay/mjpeg_fallback.ts";
 import { mountParticipants } from "../overlay/participants.ts";
 import { mountRefining } from "../overlay/refining.ts";
@@ -22,10 +23,11 @@ import { fitBeside, focusOn } from "../view/camera.ts";
 import { createDivider } from "../view/divider.ts";
 import { Navigation } from "../view/navigation.ts";
 import { createPicker } from "../view/picker.ts";
+import { PointTool } from "../view/point_tool.ts";
 import { frameSize, pointInFrame, watchSize } from "../view/viewport.ts";
 import { mountTooltips } from "../widgets/tooltip.ts";
 
-const textInputs = "input:not([type=range], [type=checkbox])";
+const textInputs = "input:not([type=range], [type=checkbox]), textarea";
 const resizeDelayMs = 150;
 
 /** Focusing on a point keeps this fraction of the distance to it. */
@@ -59,6 +61,12 @@ function main(): void {
   viewer.loading.current.watch((loading) => {
     if (loading) toasts.settle("scene");
   });
+  const points = new PointTool({
+    canvas,
+    picker: createPicker(canvas, find("mark")), // before others, so that it has the click first
+    snap: (x, y, free) => viewer.queries.snap(x, y, free),
+  });
+  mountMarks(find("marks"), viewer, points);
   const navigation = new Navigation(canvas, {
     camera: () => (viewer.hello && viewer.membership.mayMove ? viewer.camera.value : null),
     sceneSize: () => viewer.sceneSize(),
@@ -68,7 +76,7 @@ function main(): void {
     focus: (x, y) => void focusAt(x, y),
   });
   const focusAt = async (x: number, y: number): Promise<void> => {
-    if (!viewer.membership.mayMove) return;
+    if (!viewer.membership.mayMove || points.task.value) return;
     const pick = await viewer.queries.pick(x, y);
     const camera = viewer.camera.value;
     if (!camera || !pick?.position || pick.distance === null) return;
@@ -118,6 +126,7 @@ function main(): void {
       comparison: new Comparison(viewer, () => divider.newCanvas()),
       divider,
       picker: createPicker(canvas, find("mark")),
+      points,
     },
     selection: createPicker(canvas, find("mark")),
     upload: (file) => void uploadFile(viewer, file, toasts),
@@ -172,7 +181,12 @@ function main(): void {
     if (event.key === "?") help.open();
     else if (event.key === "h" || event.key === "H") panel.toggle();
     else if (event.key === "b" || event.key === "B") viewer.addBookmark();
-    else if (event.key === " " && (focused === canvas || focused === document.body)) {
+    else if (event.key === "m" || event.key === "M") panel.toggleMeasuring();
+    else if (event.key === "n" || event.key === "N") panel.toggleAnnotating();
+    else if (points.task.value && event.key === "Escape") points.cancel();
+    else if (points.task.value && event.key.toLowerCase() === "p") {
+      void points.place(0.5, 0.5, false);
+    } else if (event.key === " " && (focused === canvas || focused === document.body)) {
       viewer.togglePlay();
     } else if (event.key === "Enter" && focused === canvas) toggleFullscreen();
     else return;

@@ -11,6 +11,7 @@ const entries: [title: string, rows: [keys: string[], meaning: string][]][] = [
       [["Wheel"], "Zoom to pointer"],
       [["Double click"], "Focus on the point under the pointer"],
       [["Click"], "Select an object, while Objects is unfolded (Shift: add)"],
+      [["Click"], "Place a point, while measuring (Alt: nothing attracts it)"],
     ],
   ],
   [
@@ -32,6 +33,8 @@ const entries: [title: string, rows: [keys: string[], meaning: string][]][] = [
       [["B"], "Bookmark this view"],
       [["Ctrl Z"], "Undo the last change (Ctrl Shift Z: redo)"],
       [["V"], "Hide or show an object (in the list of objects; Enter: select)"],
+      [["M"], "Measure a distance (P: point in the middle of the view; Esc: end)"],
+      [["N"], "Annotate a surface (P: in the middle of the view; Ctrl Enter: add)"],
       [["H"], "Hide or show the panel"],
       [["Enter"], "Fullscreen (while the view has the focus)"],
       [["?"], "Show this help"],

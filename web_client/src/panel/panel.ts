@@ -32,12 +32,17 @@ interface Panel {
   /** Whether it covers a part of the view at the right. */
   isBeside(): boolean;
   toggle(): void;
+  /** Begins or ends measuring distances. */
+  toggleMeasuring(): void;
+  /** Begins or ends choosing a place for an annotation. */
+  toggleAnnotating(): void;
 }
 
 const narrow = matchMedia("(max-width: 640px)");
 
 export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActions): Panel {
   const stream = createStreamSection(viewer);
+  const inspect = createInspectTab(viewer, actions.inspect);
   const tabs = createTabs("Panel", [
     { id: "scene", label: "Scene", icon: "scene", body: createSceneTab(viewer, actions.selection, actions.upload) },
     {
@@ -52,7 +57,7 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
       id: "inspect",
       label: "Inspect",
       icon: "layers",
-      body: createInspectTab(viewer, actions.inspect),
+      body: inspect.node,
     },
     { id: "timing", label: "Timing", icon: "chart", body: createTimingTab(viewer, stream.node) },
   ]);
@@ -113,7 +118,8 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
   mountSheetDrag(header, () => open, toggle);
   restore();
   const isBeside = (): boolean => open && !narrow.matches;
-  return { resolution: stream.resolution, isBeside, toggle };
+  const { toggleMeasuring, toggleAnnotating } = inspect;
+  return { resolution: stream.resolution, isBeside, toggle, toggleMeasuring, toggleAnnotating };
 }
 
 /** On narrow screens the header is the sheet's handle: a swipe up opens it, down closes it. */
