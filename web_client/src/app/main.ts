@@ -16,10 +16,12 @@ import { mountStatus } from "../overlay/status.ts";
 import { Toasts } from "../overlay/toasts.ts";
 import { mountTransport } from "../overlay/transport.ts";
 import { mountUpload, uploadFile } from "../overlay/upload.ts";
+import { viewFrom } from "../panel/scene/view_buttons.ts";
 import { mountPanel } from "../panel/panel.ts";
 import { viewIn } from "../session/view_link.ts";
 import { Viewer } from "../session/viewer.ts";
-import { fitBeside, focusOn } from "../view/camera.ts";
+import { AutoRotate } from "../view/auto_rotate.ts";
+import { type ViewSide, fitBeside, focusOn } from "../view/camera.ts";
 import { createDivider } from "../view/divider.ts";
 import { Navigation } from "../view/navigation.ts";
 import { createPicker } from "../view/picker.ts";
@@ -29,6 +31,13 @@ import { mountTooltips } from "../widgets/tooltip.ts";
 
 const textInputs = "input:not([type=range], [type=checkbox]), textarea";
 const resizeDelayMs = 150;
+
+/** By key code, since Shift changes what digits write: a side and its opposite. */
+const sideKeys: Record<string, [ViewSide, ViewSide]> = {
+  Digit1: ["front", "back"],
+  Digit2: ["right", "left"],
+  Digit3: ["top", "bottom"],
+};
 
 /** Focusing on a point keeps this fraction of the distance to it. */
 const focusDistance = 0.6;
@@ -98,6 +107,11 @@ function main(): void {
   viewer.cameraMoves.animateTo = (camera, recorded) => navigation.goTo(camera, recorded);
   viewer.cameraMoves.isBusy = () => navigation.active;
 
+  const rotation = new AutoRotate({
+    camera: () => (viewer.hello && viewer.membership.mayMove ? viewer.camera.value : null),
+    moved: (camera) => viewer.cameraMoves.moveTo(camera, false),
+    isBusy: () => navigation.active,
+  });
   const divider = createDivider(find("compare"));
   mountMjpegFallback(viewer, find("mjpeg"));
   mountParticipants(viewer, find("participants"), (message) => toasts.inform(message));
@@ -128,6 +142,7 @@ function main(): void {
       picker: createPicker(canvas, find("mark")),
       points,
     },
+    rotation,
     selection: createPicker(canvas, find("mark")),
     upload: (file) => void uploadFile(viewer, file, toasts),
     help: help.open,
@@ -181,6 +196,10 @@ function main(): void {
     if (event.key === "?") help.open();
     else if (event.key === "h" || event.key === "H") panel.toggle();
     else if (event.key === "b" || event.key === "B") viewer.addBookmark();
+    else if (event.code in sideKeys) {
+      const [side, opposite] = sideKeys[event.code] as [ViewSide, ViewSide];
+      viewFrom(viewer, event.shiftKey ? opposite : side);
+    } else if (event.key === "r" || event.key === "R") rotation.toggle();
     else if (event.key === "m" || event.key === "M") panel.toggleMeasuring();
     else if (event.key === "n" || event.key === "N") panel.toggleAnnotating();
     else if (points.task.value && event.key === "Escape") points.cancel();

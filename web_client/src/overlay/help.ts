@@ -30,6 +30,8 @@ const entries: [title: string, rows: [keys: string[], meaning: string][]][] = [
       [["W", "A", "S", "D"], "Fly (Q, E: down, up; Shift: faster; drag: look around)"],
       [["Space"], "Play or pause"],
       [["F"], "Fit the scene into view"],
+      [["1", "2", "3"], "View from the front, the right, the top (Shift: the other side)"],
+      [["R"], "Rotate the view, or stop"],
       [["B"], "Bookmark this view"],
       [["Ctrl Z"], "Undo the last change (Ctrl Shift Z: redo)"],
       [["V"], "Hide or show an object (in the list of objects; Enter: select)"],

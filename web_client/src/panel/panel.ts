@@ -4,6 +4,7 @@ import { preferences } from "../common/preferences.ts";
 import type { Signal } from "../common/signal.ts";
 
 import { type Viewer, bufferSetting } from "../session/viewer.ts";
+import type { AutoRotate } from "../view/auto_rotate.ts";
 import type { PointPicker } from "../view/picker.ts";
 import { button, element, icon } from "../widgets/element.ts";
 import { type MenuItem, createMenu } from "../widgets/menu.ts";
@@ -21,6 +22,7 @@ interface PanelActions {
   inspect: InspectParts;
   /** Clicks that select objects. */
   selection: PointPicker;
+  rotation: AutoRotate;
   /** Uploads a scene file and loads it. */
   upload(file: File): void;
   help(): void;
@@ -44,7 +46,12 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
   const stream = createStreamSection(viewer);
   const inspect = createInspectTab(viewer, actions.inspect);
   const tabs = createTabs("Panel", [
-    { id: "scene", label: "Scene", icon: "scene", body: createSceneTab(viewer, actions.selection, actions.upload) },
+    {
+      id: "scene",
+      label: "Scene",
+      icon: "scene",
+      body: createSceneTab(viewer, actions.selection, actions.rotation, actions.upload),
+    },
     {
       id: "settings",
       label: "Advanced",
