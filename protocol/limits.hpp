@@ -40,6 +40,12 @@ inline constexpr std::size_t max_bookmark_name = 120;
 /// Bookmarks of a session, of all its scenes, and the data URL of one's image, bytes.
 inline constexpr std::size_t max_bookmarks = 64;
 inline constexpr std::size_t max_thumbnail_url = 16384;
+/// Measurements of a session, of all its scenes, and the nodes of one: every change sends the list.
+inline constexpr std::size_t max_measurements = 256;
+inline constexpr std::size_t max_measured_nodes = 256;
+/// Annotations of a session, of all its scenes, and the text of one, bytes.
+inline constexpr std::size_t max_annotations = 256;
+inline constexpr std::size_t max_annotation_text = 2000;
 inline constexpr std::uint32_t max_idle_timeout = 31'536'000;  // seconds
 inline constexpr std::size_t max_scene_name = 512;  // paths in the catalogue; environments as well
 

@@ -64,6 +64,7 @@ enum class Call {
   personal,    ///< changes something for its caller only; allowed for all callers
   command,     ///< changes the session for all its viewers; needs control of it
   movement,    ///< moves the camera: a command, but for viewers that have a camera of their own
+  annotation,  ///< measures or annotates: a command, but for all where the server allows it
   management,  ///< about sessions; needs a control token, but not control of the session
 };
 
@@ -85,7 +86,9 @@ struct MethodDescriptor {
   /// send.
   bool may_be_notification() const { return call != Call::query; }
   /// Whether it changes what the viewers of a session share.
-  bool needs_control() const { return call == Call::command || call == Call::movement; }
+  bool needs_control() const {
+    return call == Call::command || call == Call::movement || call == Call::annotation;
+  }
   /// Whether read-only viewers may call it.
   bool read_only() const { return call == Call::query || call == Call::personal; }
 };

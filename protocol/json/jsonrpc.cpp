@@ -324,8 +324,9 @@ void Dispatcher::invoke(const Entry& entry, const RawJson& params, const CallCon
   if (!params.value().is_object()) {
     return done(error::invalid("params", "must be an object", "parameters are passed by name"));
   }
-  // Whether the camera is the caller's own is known to the gate.
-  const bool gated = gate_ && entry.method->call == Call::movement;
+  // Whether the camera is the caller's own, and who may annotate, is known to the gate.
+  const Call call = entry.method->call;
+  const bool gated = gate_ && (call == Call::movement || call == Call::annotation);
   if (context.view_only && !entry.method->read_only() && !gated) {
     return done(read_only_token());
   }

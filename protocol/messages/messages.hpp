@@ -4,10 +4,12 @@
 // in these files is all there is: parsing, validation, writing and the OpenRPC document come from
 // each message's `fields()`.
 
+#include "protocol/messages/annotation_messages.hpp"
 #include "protocol/messages/bookmark_messages.hpp"
 #include "protocol/messages/frame_messages.hpp"
 #include "protocol/messages/job_messages.hpp"
 #include "protocol/messages/loading_messages.hpp"
+#include "protocol/messages/measurement_messages.hpp"
 #include "protocol/messages/membership_messages.hpp"
 #include "protocol/messages/node_messages.hpp"
 #include "protocol/messages/render_messages.hpp"

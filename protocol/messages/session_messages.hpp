@@ -21,6 +21,9 @@ using Vec3 = std::array<float, 3>;
 
 inline constexpr std::string_view protocol_name = "heliograph.v1";
 
+/// Who may measure and annotate.
+HELIOGRAPH_ENUM(Annotators, control, everyone)
+
 /// Parameters of methods without parameters.
 struct Empty {
   static constexpr auto fields() { return std::tuple{}; }
@@ -116,6 +119,7 @@ struct HelloResult {
   std::vector<std::string> codecs;
   std::optional<std::string> codec_reason;
   ServerLimits limits;
+  Annotators annotators = Annotators::control;
   std::uint32_t rev = 0;
   std::string instance;
   std::optional<bool> restore_state;
@@ -137,6 +141,9 @@ struct HelloResult {
               "Why the client's preferred codec is not used; null if it is.")
             .or_null(),
         field("limits", &HelloResult::limits, "Limits of the server."),
+        field("annotators", &HelloResult::annotators,
+              "Who may measure and annotate: viewers that have control, or everyone, also with a "
+              "token that allows viewing only."),
         field("rev", &HelloResult::rev, "Revision of the session's state."),
         field("instance", &HelloResult::instance,
               "Identifies this run of the server. If it differs after a reconnect, the session "

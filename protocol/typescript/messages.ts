@@ -57,6 +57,11 @@ export interface HelloLimits {
 
 /** Result of hello. */
 export interface Hello {
+  /**
+   * Who may measure and annotate: viewers that have control, or everyone, also with a token that
+   * allows viewing only.
+   */
+  annotators: "control" | "everyone";
   /** Why the client's preferred codec is not used; null if it is. */
   codec_reason: string | null;
   /** Codecs of the frames that follow, preferred first. */
@@ -966,6 +971,168 @@ export interface Selection {
   rev: number;
 }
 
+/** Parameters of scene.snap. */
+export interface SceneSnapParams {
+  /** Fraction of the image width, from the left. */
+  x: number;
+  /** Fraction of the image height, from the top. */
+  y: number;
+  /** Whether edges attract, except those that divide a flat face into triangles. */
+  edges?: boolean;
+  /** How far from there a vertex or edge may be, as a fraction of the image height. */
+  radius?: number;
+  /** Whether vertices attract; they come before edges. */
+  vertices?: boolean;
+}
+
+export interface SurfaceAnchor {
+  /** Weights of the triangle's vertices; their sum is 1. */
+  barycentrics: Vector3;
+  /** Id from nodes.list of a node with a mesh. */
+  node: number;
+  /** Number of the triangle among those of the node's meshes, from 0. */
+  triangle: number;
+}
+
+/** Result of scene.snap. */
+export interface Snap {
+  /** What it lies on; absent without a surface. */
+  feature?: "vertex" | "edge" | "face";
+  /** Whether there is a surface; if not, the other members are null or absent. */
+  hit: boolean;
+  /** Of the triangle, facing the camera, world space. */
+  normal: Vector3 | null;
+  /** The point on the mesh, world space. [metres] */
+  position: Vector3 | null;
+  /** The same point, to be kept as the mesh moves. */
+  surface: SurfaceAnchor | null;
+}
+
+export interface MeasuredPoint {
+  /** World space; in a request without `surface`: where the point stays. [metres] */
+  position?: Vector3;
+  /** From scene.snap: the point stays on this triangle, whatever `position` says. */
+  surface?: SurfaceAnchor;
+}
+
+export interface Measurement {
+  /** Of a size: the box; null otherwise. */
+  bounds: SceneInfoBounds | null;
+  /**
+   * Along the three axes: of a distance from the first to the second point, of a size the sides of
+   * the box; null for angles. [metres]
+   */
+  extent: Vector3 | null;
+  /** Its id, unique in the session. */
+  id: number;
+  /** What is measured. */
+  kind: "distance" | "angle" | "size";
+  /** Of a size. */
+  nodes: number[];
+  /** Where they are now. */
+  points: MeasuredPoint[];
+  /** The value in the unit, for display. */
+  text: string;
+  /** Metres; of an angle: degrees; of a size: the box's diagonal. */
+  value: number;
+}
+
+/** Result of measurements.list. */
+export interface MeasurementList {
+  /** In the order of their ids. */
+  measurements: Measurement[];
+  /** Counts the changes of the session's measurements. */
+  rev: number;
+  /** The scene that the session shows; null: none. */
+  scene: string | null;
+  /** Unit of the texts. */
+  unit: "m" | "cm" | "mm" | "km" | "in" | "ft";
+}
+
+/** Parameters of measurements.add. */
+export interface MeasurementsAddParams {
+  /**
+   * distance: between two points; angle: of three points, at the second; size: of the box around
+   * nodes with all below them, before any animation.
+   */
+  kind: "distance" | "angle" | "size";
+  /** Its id, such as that of one that was removed; absent: the next one. */
+  id?: number;
+  /** Of a size: ids from nodes.list. */
+  nodes?: number[];
+  /** Of a distance or angle. */
+  points?: MeasuredPoint[];
+}
+
+/** Parameters of measurements.remove. */
+export interface MeasurementsRemoveParams {
+  /** An id from measurements.list. */
+  id: number;
+}
+
+/** Parameters of measurements.unit. */
+export interface MeasurementsUnitParams {
+  /** Unit of the texts from now on. */
+  unit: "m" | "cm" | "mm" | "km" | "in" | "ft";
+}
+
+export interface Annotation {
+  /** Who says it; may be empty. */
+  author: string;
+  /** Its id, unique among the session's annotations. */
+  id: number;
+  /** Of the triangle's front, world space. */
+  normal: Vector3;
+  /** Where that is now, world space. [metres] */
+  position: Vector3;
+  /** Where it is pinned. */
+  surface: SurfaceAnchor;
+  /** What it says. */
+  text: string;
+}
+
+/** Result of annotations.list. */
+export interface AnnotationList {
+  /** In the order of their ids. */
+  annotations: Annotation[];
+  /** Counts the changes of the session's annotations. */
+  rev: number;
+  /** The scene that the session shows; null: none. */
+  scene: string | null;
+}
+
+/** Result of annotations.hidden. */
+export interface AnnotationsHiddenResult {
+  /** Ids of those within the image that a surface in front of them covers. */
+  hidden: number[];
+}
+
+/** Parameters of annotations.add. */
+export interface AnnotationsAddParams {
+  /** Where it is pinned, from scene.snap. */
+  surface: SurfaceAnchor;
+  /** What it says. */
+  text: string;
+  /** Who says it; absent: the viewer's display name, if it has one. */
+  author?: string;
+  /** Its id, such as that of one that was removed; absent: the next one. */
+  id?: number;
+}
+
+/** Parameters of annotations.edit. */
+export interface AnnotationsEditParams {
+  /** An id from annotations.list. */
+  id: number;
+  /** What it says from now on. */
+  text: string;
+}
+
+/** Parameters of annotations.remove. */
+export interface AnnotationsRemoveParams {
+  /** An id from annotations.list. */
+  id: number;
+}
+
 export interface JobCreateParamsEntriesView {
   /** Position of the camera, world space. [metres] */
   eye: Vector3;
@@ -1311,6 +1478,22 @@ export interface SelectionChangedNotification {
   rev: number;
 }
 
+/** Parameters of the notification measurements.changed. */
+export interface MeasurementsChangedNotification {
+  /** The viewer that changed them; empty: the server. */
+  by: string;
+  /** The measurements after the change. */
+  list: MeasurementList;
+}
+
+/** Parameters of the notification annotations.changed. */
+export interface AnnotationsChangedNotification {
+  /** The viewer that changed them; empty: the server. */
+  by: string;
+  /** The annotations after the change. */
+  list: AnnotationList;
+}
+
 /** The content of error.data. */
 export interface ErrorData {
   /** The valid values. */
@@ -1470,6 +1653,30 @@ export interface Methods {
    * Selects nodes in place of those before; frames show them, with all below them, in an outline.
    */
   "selection.set": { params: NodesInfoParams; result: Selection };
+  /** Returns the exact point of the mesh at a point of the image, or a vertex or edge near it. */
+  "scene.snap": { params: SceneSnapParams; result: Snap };
+  /** Lists what has been measured in the scene, as it is at this moment of the animation. */
+  "measurements.list": { params: Empty; result: MeasurementList };
+  /** Measures a distance, an angle or a size, which stays in the session. */
+  "measurements.add": { params: MeasurementsAddParams; result: MeasurementList };
+  /** Removes a measurement. */
+  "measurements.remove": { params: MeasurementsRemoveParams; result: MeasurementList };
+  /** Removes all measurements of the scene. */
+  "measurements.clear": { params: Empty; result: MeasurementList };
+  /** Chooses the unit in which lengths are told. */
+  "measurements.unit": { params: MeasurementsUnitParams; result: MeasurementList };
+  /** Lists the annotations of the scene, where they are at this moment of the animation. */
+  "annotations.list": { params: Empty; result: AnnotationList };
+  /** Tells which annotations the newest frame shows behind other surfaces. */
+  "annotations.hidden": { params: Empty; result: AnnotationsHiddenResult };
+  /** Pins a text to a surface, which it follows as that moves or deforms. */
+  "annotations.add": { params: AnnotationsAddParams; result: AnnotationList };
+  /** Changes what an annotation says. */
+  "annotations.edit": { params: AnnotationsEditParams; result: AnnotationList };
+  /** Removes an annotation. */
+  "annotations.remove": { params: AnnotationsRemoveParams; result: AnnotationList };
+  /** Removes all annotations of the scene. */
+  "annotations.clear": { params: Empty; result: AnnotationList };
   /** Queues images and videos of scenes to render into files, beside the sessions. */
   "job.create": { params: JobCreateParams; result: JobCreateResult };
   /** Lists jobs, the newest first, without their files. */
@@ -1519,6 +1726,10 @@ export interface Notifications {
   "nodes.changed": NodesChangedNotification;
   /** Another viewer changed the selection. */
   "selection.changed": SelectionChangedNotification;
+  /** Another viewer changed what is measured. */
+  "measurements.changed": MeasurementsChangedNotification;
+  /** Another viewer added, edited or removed an annotation. */
+  "annotations.changed": AnnotationsChangedNotification;
   /**
    * A job was created, begun, canceled, ended, or has more images; for every viewer of the server.
    * Without files.

@@ -63,6 +63,7 @@ struct ServeOptions {
   std::string token;
   std::string view_token;
   std::string token_file;
+  std::string annotate = "control";
   bool insecure = false;
   std::vector<std::string> allowed_origins;
   std::vector<std::string> allowed_hosts;

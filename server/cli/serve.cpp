@@ -30,6 +30,7 @@ session::HostOptions host_options(const ServeOptions& options) {
   result.session.settings = parse_settings(options.settings);
   result.session.limits.max_viewers = options.max_viewers;
   result.release_after = std::chrono::seconds(options.release_after);
+  result.annotators = protocol::enum_value<protocol::Annotators>(options.annotate).value();
   result.limits = {.sessions = options.max_sessions,
                    .viewers = options.max_all_viewers,
                    .pixels = options.max_pixels,

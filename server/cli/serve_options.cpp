@@ -72,6 +72,13 @@ void add_access_options(CLI::App& command, ServeOptions& options) {
       ->check(CLI::ExistingFile)
       ->group(group);
   command
+      .add_option("--annotate", options.annotate,
+                  "Who may measure and annotate: clients that have control of the session, or "
+                  "everyone, also with a view token")
+      ->check(one_of({"control", "everyone"}))
+      ->capture_default_str()
+      ->group(group);
+  command
       .add_flag("--insecure", options.insecure,
                 "Allow clients without a token, on any address, to view and control")
       ->group(group);

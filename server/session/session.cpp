@@ -103,6 +103,8 @@ void Session::copy_from(const Session& other) {
   core_.environment_name = from.environment_name;
   core_.camera.copy_from(from.camera);
   core_.bookmarks = from.bookmarks;
+  core_.measured = from.measured;
+  core_.annotations = from.annotations;
   core_.timeline.copy_from(from.timeline);
   core_.reference.copy_from(from.reference);
   buffers_ = other.buffers_;

@@ -9,6 +9,8 @@
 
 #include "protocol/messages/messages.hpp"
 #include "protocol/result.hpp"
+#include "session/inspection/session_annotations.hpp"
+#include "session/inspection/session_measurements.hpp"
 #include "session/nodes/session_nodes.hpp"
 #include "session/rendering/pixel_budget.hpp"
 #include "session/session_camera.hpp"
@@ -51,6 +53,8 @@ class Session {
   SessionScene& scene() { return scene_; }
   const SessionScene& scene() const { return scene_; }
   SessionNodes& nodes() { return nodes_; }
+  SessionMeasurements& measurements() { return measurements_; }
+  SessionAnnotations& annotations() { return annotations_; }
   SessionCamera& camera() { return camera_; }
   SessionTimeline& timeline() { return timeline_; }
   const SessionTimeline& timeline() const { return timeline_; }
@@ -126,6 +130,8 @@ class Session {
   std::atomic<bool> modified_ = false;
   SessionScene scene_{core_};
   SessionNodes nodes_{core_};
+  SessionMeasurements measurements_{core_};
+  SessionAnnotations annotations_{core_};
   SessionCamera camera_{core_};
   SessionTimeline timeline_{core_};
   SessionCaptures captures_{core_};

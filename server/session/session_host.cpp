@@ -41,12 +41,16 @@ Paths with(Paths paths, const Paths& more) {
 }
 
 /// Whether the caller has control of what the method changes: of the session, or of its camera
-/// where that is the viewer's own.
+/// where that is the viewer's own; who may annotate is the server's choice.
 Result<void> may_change(const Session& session, const protocol::MethodDescriptor& method,
-                        const protocol::CallContext& call) {
+                        const protocol::CallContext& call, protocol::Annotators annotators) {
   const bool own_view = !session.follows().empty() && !call.viewer.empty();
   const bool moves = method.call == protocol::Call::movement;
   if (own_view && moves) return {};
+  if (method.call == protocol::Call::annotation && session.follows().empty() &&
+      annotators == protocol::Annotators::everyone) {
+    return {};
+  }
   if (call.view_only) return protocol::read_only_token();
   if (!session.follows().empty() && !moves) {
     return protocol::error::make(
@@ -106,7 +110,7 @@ SessionHost::SessionHost(const render::Engines& engines, HostOptions options)
     if (!session) return session.error();
     (*session)->mark_used();
     if (!method.needs_control()) return {};
-    if (const auto may = may_change(**session, method, call); !may) return may;
+    if (const auto may = may_change(**session, method, call, options_.annotators); !may) return may;
     (*session)->mark_modified();
     return {};
   });

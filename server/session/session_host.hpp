@@ -34,6 +34,7 @@ struct HostOptions {
   std::uint64_t scene_cache_bytes = 1ull << 30;
   std::filesystem::path thumbnail_folder;  // of scenes; empty: in memory
   protocol::DispatchLimits dispatch;
+  protocol::Annotators annotators = protocol::Annotators::control;
   /// Largest scene that clients may send; 0: none.
   std::uint64_t max_upload_bytes = 0;
   /// A session without viewers releases its renderer after so long.
@@ -54,6 +55,7 @@ class SessionHost {
   const protocol::Dispatcher& dispatcher() const { return dispatcher_; }
   const protocol::DispatchLimits& dispatch_limits() const { return options_.dispatch; }
   std::uint64_t max_upload_bytes() const { return options_.max_upload_bytes; }
+  protocol::Annotators annotators() const { return options_.annotators; }
   const SceneCatalogue& catalogue() const { return catalogue_; }
   const RenderDevices& devices() const { return devices_; }
 

@@ -9,6 +9,7 @@ import {
   orbit,
   orbitAround,
   pan,
+  seenFrom,
   visibleHeight,
   zoomTo,
 } from "../src/view/camera.ts";
@@ -188,4 +189,14 @@ test("a fit beside the panel centres the scene in the part that is not covered",
   const cropped = fitBeside(start, 1.5, 0.5, 0);
   const narrow = Math.sin(Math.atan(Math.tan(Math.PI / 6) * 0.5));
   assert.ok(Math.abs(cropped.eye[2] - (10 * Math.sin(Math.PI / 6)) / narrow) < 1e-9);
+});
+
+test("views from the sides keep target and distance, and have an up direction", () => {
+  const camera = { ...front, target: [1, 2, 3] as Vector3, eye: [4, 6, 3] as Vector3 };
+  assert.deepEqual(seenFrom(camera, "right").eye, [6, 2, 3]);
+  assert.deepEqual(seenFrom(camera, "back").eye, [1, 2, -2]);
+  const top = seenFrom(camera, "top");
+  assert.deepEqual([top.eye, top.target, top.up], [[1, 7, 3], [1, 2, 3], [0, 0, -1]]);
+  const turned = orbit(top, 0, -0.2);
+  assert.ok(turned.eye[2] > 3 && Math.abs(turned.eye[0] - 1) < 1e-9, "orbiting goes on to the front");
 });

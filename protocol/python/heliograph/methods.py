@@ -64,6 +64,67 @@ class Animation(_Group):
         return self._call("animation.rate", _given({"rate": rate}))
 
 
+class Annotations(_Group):
+    def list(self) -> Dict[str, Any]:
+        """Lists the annotations of the scene, where they are at this moment of the animation.
+
+        Returns: annotations, rev, scene.
+        """
+        return self._call("annotations.list", {})
+
+    def hidden(self) -> Dict[str, Any]:
+        """Tells which annotations the newest frame shows behind other surfaces.
+
+        Returns: hidden.
+        """
+        return self._call("annotations.hidden", {})
+
+    def add(
+            self,
+            *,
+            surface: Dict[str, Any],
+            text: str,
+            author: str = _UNSET,
+            id: int = _UNSET) -> Dict[str, Any]:
+        """Pins a text to a surface, which it follows as that moves or deforms.
+
+        surface: Where it is pinned, from scene.snap.
+        text: What it says.
+        author: Who says it; absent: the viewer's display name, if it has one.
+        id: Its id, such as that of one that was removed; absent: the next one.
+
+        Returns: annotations, rev, scene.
+        """
+        return self._call("annotations.add", _given({
+            "surface": surface, "text": text, "author": author, "id": id}))
+
+    def edit(self, *, id: int, text: str) -> Dict[str, Any]:
+        """Changes what an annotation says.
+
+        id: An id from annotations.list.
+        text: What it says from now on.
+
+        Returns: annotations, rev, scene.
+        """
+        return self._call("annotations.edit", _given({"id": id, "text": text}))
+
+    def remove(self, *, id: int) -> Dict[str, Any]:
+        """Removes an annotation.
+
+        id: An id from annotations.list.
+
+        Returns: annotations, rev, scene.
+        """
+        return self._call("annotations.remove", _given({"id": id}))
+
+    def clear(self) -> Dict[str, Any]:
+        """Removes all annotations of the scene.
+
+        Returns: annotations, rev, scene.
+        """
+        return self._call("annotations.clear", {})
+
+
 class Bookmarks(_Group):
     def list(self) -> Dict[str, Any]:
         """Lists the bookmarks of the scene that the session shows.
@@ -362,6 +423,60 @@ class Materials(_Group):
         return self._call("materials.patch", _given({"material": material, "patch": patch}))
 
 
+class Measurements(_Group):
+    def list(self) -> Dict[str, Any]:
+        """Lists what has been measured in the scene, as it is at this moment of the animation.
+
+        Returns: measurements, rev, scene, unit.
+        """
+        return self._call("measurements.list", {})
+
+    def add(
+            self,
+            *,
+            kind: Literal["distance", "angle", "size"],
+            id: int = _UNSET,
+            nodes: List[int] = _UNSET,
+            points: List[Dict[str, Any]] = _UNSET) -> Dict[str, Any]:
+        """Measures a distance, an angle or a size, which stays in the session.
+
+        kind: distance: between two points; angle: of three points, at the second; size: of the
+            box around nodes with all below them, before any animation.
+        id: Its id, such as that of one that was removed; absent: the next one.
+        nodes: Of a size: ids from nodes.list.
+        points: Of a distance or angle.
+
+        Returns: measurements, rev, scene, unit.
+        """
+        return self._call("measurements.add", _given({
+            "kind": kind, "id": id, "nodes": nodes, "points": points}))
+
+    def remove(self, *, id: int) -> Dict[str, Any]:
+        """Removes a measurement.
+
+        id: An id from measurements.list.
+
+        Returns: measurements, rev, scene, unit.
+        """
+        return self._call("measurements.remove", _given({"id": id}))
+
+    def clear(self) -> Dict[str, Any]:
+        """Removes all measurements of the scene.
+
+        Returns: measurements, rev, scene, unit.
+        """
+        return self._call("measurements.clear", {})
+
+    def unit(self, *, unit: Literal["m", "cm", "mm", "km", "in", "ft"]) -> Dict[str, Any]:
+        """Chooses the unit in which lengths are told.
+
+        unit: Unit of the texts from now on.
+
+        Returns: measurements, rev, scene, unit.
+        """
+        return self._call("measurements.unit", _given({"unit": unit}))
+
+
 class Nodes(_Group):
     def list(
             self,
@@ -498,6 +613,28 @@ class Scene(_Group):
         Returns: distance, hit, material, node, normal, object, position.
         """
         return self._call("scene.pick", _given({"x": x, "y": y}))
+
+    def snap(
+            self,
+            *,
+            x: float,
+            y: float,
+            edges: bool = _UNSET,
+            radius: float = _UNSET,
+            vertices: bool = _UNSET) -> Dict[str, Any]:
+        """Returns the exact point of the mesh at a point of the image, or a vertex or edge near
+        it.
+
+        x: Fraction of the image width, from the left.
+        y: Fraction of the image height, from the top.
+        edges: Whether edges attract, except those that divide a flat face into triangles.
+        radius: How far from there a vertex or edge may be, as a fraction of the image height.
+        vertices: Whether vertices attract; they come before edges.
+
+        Returns: feature, hit, normal, position, surface.
+        """
+        return self._call("scene.snap", _given({
+            "x": x, "y": y, "edges": edges, "radius": radius, "vertices": vertices}))
 
 
 class Selection(_Group):
@@ -732,6 +869,7 @@ class Methods:
     def __init__(self, call):
         self._call = call
         self.animation = Animation(call)
+        self.annotations = Annotations(call)
         self.bookmarks = Bookmarks(call)
         self.camera = Camera(call)
         self.environment = Environment(call)
@@ -739,6 +877,7 @@ class Methods:
         self.job = Job(call)
         self.lights = Lights(call)
         self.materials = Materials(call)
+        self.measurements = Measurements(call)
         self.nodes = Nodes(call)
         self.reference = Reference(call)
         self.rpc = Rpc(call)
@@ -768,8 +907,8 @@ class Methods:
         name: Display name, shown to the other viewers of the session.
         session: The session to join; absent: the one in /ws?session=NAME, or main.
 
-        Returns: codec_reason, codecs, device, instance, limits, protocol, restore_state, rev,
-            role, session, tracer, version, viewer.
+        Returns: annotators, codec_reason, codecs, device, instance, limits, protocol,
+            restore_state, rev, role, session, tracer, version, viewer.
         """
         return self._call("hello", _given({
             "client": client, "codecs": codecs, "instance": instance, "name": name,

@@ -128,4 +128,17 @@ Bounds deform(const Scene& scene, const Deformation& deformation, const Pose& po
   return tbb::parallel_reduce(all, Bounds{}, deform_range, both);
 }
 
+glm::vec3 deformed_position(const Scene& scene, const Deformation& deformation, const Pose& pose,
+                            std::uint32_t vertex) {
+  const Shape& shape = scene.shapes[deformation.shape];
+  const auto targets = active_targets(shape, pose.weights[deformation.node]);
+  shared::Vertex placed = morphed(shape.vertices[vertex], vertex, targets);
+  if (deformation.skin) {
+    const auto joints = joint_matrices(scene.skins[*deformation.skin], pose);
+    const std::size_t count = shape.joints_per_vertex;
+    skin(placed, std::span(shape.influences).subspan(vertex * count, count), joints);
+  }
+  return placed.position;
+}
+
 }  // namespace heliograph::scene

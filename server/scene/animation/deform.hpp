@@ -17,4 +17,8 @@ bool shape_differs(const Scene& scene, const Deformation& deformation, const Pos
 Bounds deform(const Scene& scene, const Deformation& deformation, const Pose& pose,
               std::span<shared::Vertex> vertices);
 
+/// Where `deform` places one vertex, mesh space.
+glm::vec3 deformed_position(const Scene& scene, const Deformation& deformation, const Pose& pose,
+                            std::uint32_t vertex);
+
 }  // namespace heliograph::scene

@@ -21,6 +21,8 @@ void add_frame_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_edit_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_node_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_probe_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
+void add_measurement_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
+void add_annotation_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_job_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 
 /// Adds a command that answers at once: `command(session, request, viewer)` gives a

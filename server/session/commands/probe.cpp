@@ -2,6 +2,7 @@
 
 #include "render/api/renderer.hpp"
 #include "session/commands/commands.hpp"
+#include "session/inspection/snapping.hpp"
 #include "session/library/scene_description.hpp"
 #include "session/nodes/node_state.hpp"
 
@@ -15,6 +16,8 @@ using protocol::ImagePoint;
 using protocol::Inspection;
 using protocol::PickResult;
 using protocol::Result;
+using protocol::SceneSnap;
+using protocol::SnapResult;
 
 namespace {
 
@@ -39,12 +42,15 @@ PickResult describe(const render::SurfacePoint& surface, const scene::Scene& sce
           .node = nodes_of_instances(scene).at(surface.instance)};
 }
 
-Result<PickResult> pick(const render::Renderer& renderer, const scene::Scene& scene,
-                        glm::vec2 point) {
-  const auto surface = renderer.pick(point);
-  if (!surface) return surface.error();
-  if (!*surface) return PickResult();
-  return describe(**surface, scene);
+template <class Request>
+glm::vec2 at(const Request& request) {
+  return {request.x, request.y};
+}
+
+Result<std::optional<render::SurfacePoint>> pick(const render::Renderer& renderer,
+                                                 const RenderState& state, glm::vec2 point) {
+  if (!state.scene) return protocol::error::not_ready("no scene is loaded");
+  return renderer.pick(point);
 }
 
 Inspection inspect(const render::Renderer& renderer, const RenderState& state, glm::vec2 point) {
@@ -66,20 +72,23 @@ Inspection inspect(const render::Renderer& renderer, const RenderState& state, g
   return inspection;
 }
 
-/// Adds a method that reads from the frame at a point. `reads_buffers`: see Probe.
+/// A probe waits in its session, which it must not keep.
+using AskedSession = std::weak_ptr<Session>;
+
+/// Adds a method that reads from the frame. `reads_buffers`: see Probe.
 template <class Method, class Read>
 void add_probe(protocol::Dispatcher& dispatcher, SessionHost& host, bool reads_buffers, Read read) {
   dispatcher.add<Method>(
-      [&host, reads_buffers, read](const ImagePoint& request, const protocol::CallContext& context,
+      [&host, reads_buffers, read](const typename Method::Params& request,
+                                   const protocol::CallContext& context,
                                    protocol::Completion<typename Method::Result> done) {
         const auto session = host.sessions().session_of(context);
         if (!session) return done(session.error());
-        const glm::vec2 point(request.x, request.y);
         const Result<void> accepted = (*session)->captures().request_probe(
             {.reads_buffers = reads_buffers,
-             .read = [read, point, done](
+             .read = [read, request, done, asked = std::weak_ptr<Session>(*session)](
                          render::Renderer& renderer,
-                         const RenderState& state) { done(read(renderer, state, point)); },
+                         const RenderState& state) { done(read(renderer, state, request, asked)); },
              .fail = [done](const protocol::Error& error) { done(error); }});
         if (!accepted) done(accepted.error());
       });
@@ -88,17 +97,38 @@ void add_probe(protocol::Dispatcher& dispatcher, SessionHost& host, bool reads_b
 }  // namespace
 
 void add_probe_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
-  add_probe<methods::scene_pick>(dispatcher, host, false,
-                                 [](const render::Renderer& renderer, const RenderState& state,
-                                    glm::vec2 point) -> Result<PickResult> {
-                                   if (!state.scene)
-                                     return protocol::error::not_ready("no scene is loaded");
-                                   return pick(renderer, *state.scene, point);
-                                 });
+  add_probe<methods::scene_pick>(
+      dispatcher, host, false,
+      [](const render::Renderer& renderer, const RenderState& state, const ImagePoint& request,
+         const AskedSession&) -> Result<PickResult> {
+        const auto surface = pick(renderer, state, at(request));
+        if (!surface) return surface.error();
+        if (!*surface) return PickResult();
+        return describe(**surface, *state.scene);
+      });
+  add_probe<methods::scene_snap>(
+      dispatcher, host, false,
+      [](const render::Renderer& renderer, const RenderState& state, const SceneSnap& request,
+         const AskedSession&) -> Result<SnapResult> {
+        const auto surface = pick(renderer, state, at(request));
+        if (!surface) return surface.error();
+        if (!*surface) return SnapResult();
+        return snap(state, **surface, request);
+      });
+  add_probe<methods::annotations_hidden>(
+      dispatcher, host, false,
+      [](const render::Renderer& renderer, const RenderState& state, const protocol::Empty&,
+         const AskedSession& asked) -> Result<protocol::HiddenAnnotations> {
+        const auto session = asked.lock();
+        if (!session || !state.scene) return protocol::HiddenAnnotations();
+        return hidden_annotations(renderer, state, session->annotations().list());
+      });
   add_probe<methods::frame_inspect>(
       dispatcher, host, true,
-      [](const render::Renderer& renderer, const RenderState& state,
-         glm::vec2 point) -> Result<Inspection> { return inspect(renderer, state, point); });
+      [](const render::Renderer& renderer, const RenderState& state, const ImagePoint& request,
+         const AskedSession&) -> Result<Inspection> {
+        return inspect(renderer, state, at(request));
+      });
 }
 
 }  // namespace heliograph::session

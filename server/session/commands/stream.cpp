@@ -92,6 +92,7 @@ HelloResult greeting(SessionHost& host, const ChosenSession& chosen,
       .max_batch = static_cast<std::uint32_t>(host.dispatch_limits().max_batch),
       .max_pending = static_cast<std::uint32_t>(limits.max_captures),
       .max_upload_bytes = call.view_only ? 0 : host.max_upload_bytes()};
+  result.annotators = host.annotators();
   result.rev = session.rev();
   result.instance = instance();
   result.restore_state = chosen.restore_state;

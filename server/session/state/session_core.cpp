@@ -43,6 +43,8 @@ void SessionCore::follow(const SessionCore& leader) {
   const AnimationClock clock = timeline.clock();
   timeline.follow(leader.timeline);
   bookmarks = leader.bookmarks;
+  measured = leader.measured;
+  annotations = leader.annotations;
   const bool same = resources == leader.resources && scene == leader.scene &&
                     settings == leader.settings && environment == leader.environment &&
                     edits.device_lights() == leader.edits.device_lights() &&
@@ -87,6 +89,10 @@ RenderState SessionCore::snapshot() const {
           .reset_count = timeline.reset_count(),
           .lockstep = timeline.lockstep_time(),
           .reference_started = reference.started()};
+}
+
+double SessionCore::clip_seconds() const {
+  return timeline.clock().at(timeline.lockstep_time().value_or(Clock::now()));
 }
 
 Result<void> SessionCore::require_scene() const {

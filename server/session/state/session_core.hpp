@@ -13,6 +13,8 @@
 #include "protocol/messages/messages.hpp"
 #include "protocol/result.hpp"
 #include "scene/scene.hpp"
+#include "session/inspection/annotation_set.hpp"
+#include "session/inspection/measurement_set.hpp"
 #include "session/nodes/node_state.hpp"
 #include "session/state/bookmarks.hpp"
 #include "session/state/camera_state.hpp"
@@ -59,6 +61,10 @@ struct SessionCore {
                                                              const std::string& by);
   /// width / height
   float aspect() const { return static_cast<float>(width) / static_cast<float>(height); }
+  /// What its scene is a part of.
+  ScenePart part() const { return {.name = scene_info.name, .part = scene_info.scene}; }
+  /// The position of its clip now.
+  double clip_seconds() const;
 
   /// Sends a notification to all viewers but `by`, which made the change.
   template <class Notification>
@@ -111,6 +117,8 @@ struct SessionCore {
   std::shared_ptr<const render::LitEnvironment> environment;
   CameraState camera;
   Bookmarks bookmarks;
+  MeasurementSet measured;
+  AnnotationSet annotations;
   Timeline timeline;
   CaptureQueue captures;
   ReferenceMode reference;

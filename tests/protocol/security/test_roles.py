@@ -15,6 +15,8 @@ COMMANDS = """
     settings.patch settings.preset animation.play animation.pause animation.seek animation.rate
     session.create session.close session.control materials.patch lights.patch environment.set
     frame.step frame.run reference.start reference.stop job.create job.cancel
+    measurements.add measurements.remove measurements.clear measurements.unit
+    annotations.add annotations.edit annotations.remove annotations.clear
     """.split()
 PERSONAL = "stream.pause stream.resume stream.ack stream.configure stats.subscribe".split()
 

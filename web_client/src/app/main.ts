@@ -8,6 +8,7 @@ import { createRenderDialog } from "../output/render_dialog.ts";
 import { reportToEmbeddingPage } from "../embed/embedding_page.ts";
 import { mountFirstHint } from "../overlay/first_hint.ts";
 import { createHelp } from "../overlay/help.ts";
+import { mountMarks } from "../overlay/marks.ts";
 import { mountMjpegFallback } from "../overlay/mjpeg_fallback.ts";
 import { mountParticipants } from "../overlay/participants.ts";
 import { mountRefining } from "../overlay/refining.ts";
@@ -15,18 +16,28 @@ import { mountStatus } from "../overlay/status.ts";
 import { Toasts } from "../overlay/toasts.ts";
 import { mountTransport } from "../overlay/transport.ts";
 import { mountUpload, uploadFile } from "../overlay/upload.ts";
+import { viewFrom } from "../panel/scene/view_buttons.ts";
 import { mountPanel } from "../panel/panel.ts";
 import { viewIn } from "../session/view_link.ts";
 import { Viewer } from "../session/viewer.ts";
-import { fitBeside, focusOn } from "../view/camera.ts";
+import { AutoRotate } from "../view/auto_rotate.ts";
+import { type ViewSide, fitBeside, focusOn } from "../view/camera.ts";
 import { createDivider } from "../view/divider.ts";
 import { Navigation } from "../view/navigation.ts";
 import { createPicker } from "../view/picker.ts";
+import { PointTool } from "../view/point_tool.ts";
 import { frameSize, pointInFrame, watchSize } from "../view/viewport.ts";
 import { mountTooltips } from "../widgets/tooltip.ts";
 
-const textInputs = "input:not([type=range], [type=checkbox])";
+const textInputs = "input:not([type=range], [type=checkbox]), textarea";
 const resizeDelayMs = 150;
+
+/** By key code, since Shift changes what digits write: a side and its opposite. */
+const sideKeys: Record<string, [ViewSide, ViewSide]> = {
+  Digit1: ["front", "back"],
+  Digit2: ["right", "left"],
+  Digit3: ["top", "bottom"],
+};
 
 /** Focusing on a point keeps this fraction of the distance to it. */
 const focusDistance = 0.6;
@@ -59,6 +70,12 @@ function main(): void {
   viewer.loading.current.watch((loading) => {
     if (loading) toasts.settle("scene");
   });
+  const points = new PointTool({
+    canvas,
+    picker: createPicker(canvas, find("mark")), // before others, so that it has the click first
+    snap: (x, y, free) => viewer.queries.snap(x, y, free),
+  });
+  mountMarks(find("marks"), viewer, points);
   const navigation = new Navigation(canvas, {
     camera: () => (viewer.hello && viewer.membership.mayMove ? viewer.camera.value : null),
     sceneSize: () => viewer.sceneSize(),
@@ -69,7 +86,7 @@ function main(): void {
     focus: (x, y) => void focusAt(x, y),
   });
   const focusAt = async (x: number, y: number): Promise<void> => {
-    if (!viewer.membership.mayMove) return;
+    if (!viewer.membership.mayMove || points.task.value) return;
     const pick = await viewer.queries.pick(x, y);
     const camera = viewer.camera.value;
     if (!camera || !pick?.position || pick.distance === null) return;
@@ -91,6 +108,11 @@ function main(): void {
   viewer.cameraMoves.animateTo = (camera, recorded) => navigation.goTo(camera, recorded);
   viewer.cameraMoves.isBusy = () => navigation.active;
 
+  const rotation = new AutoRotate({
+    camera: () => (viewer.hello && viewer.membership.mayMove ? viewer.camera.value : null),
+    moved: (camera) => viewer.cameraMoves.moveTo(camera, false),
+    isBusy: () => navigation.active,
+  });
   const divider = createDivider(find("compare"));
   mountMjpegFallback(viewer, find("mjpeg"));
   mountParticipants(viewer, find("participants"), (message) => toasts.inform(message));
@@ -119,7 +141,9 @@ function main(): void {
       comparison: new Comparison(viewer, () => divider.newCanvas()),
       divider,
       picker: createPicker(canvas, find("mark")),
+      points,
     },
+    rotation,
     selection: createPicker(canvas, find("mark")),
     upload: (file) => void uploadFile(viewer, file, toasts),
     help: help.open,
@@ -173,7 +197,16 @@ function main(): void {
     if (event.key === "?") help.open();
     else if (event.key === "h" || event.key === "H") panel.toggle();
     else if (event.key === "b" || event.key === "B") viewer.addBookmark();
-    else if (event.key === " " && (focused === canvas || focused === document.body)) {
+    else if (event.code in sideKeys) {
+      const [side, opposite] = sideKeys[event.code] as [ViewSide, ViewSide];
+      viewFrom(viewer, event.shiftKey ? opposite : side);
+    } else if (event.key === "r" || event.key === "R") rotation.toggle();
+    else if (event.key === "m" || event.key === "M") panel.toggleMeasuring();
+    else if (event.key === "n" || event.key === "N") panel.toggleAnnotating();
+    else if (points.task.value && event.key === "Escape") points.cancel();
+    else if (points.task.value && event.key.toLowerCase() === "p") {
+      void points.place(0.5, 0.5, false);
+    } else if (event.key === " " && (focused === canvas || focused === document.body)) {
       viewer.togglePlay();
     } else if (event.key === "Enter" && focused === canvas) toggleFullscreen();
     else return;

@@ -4,6 +4,7 @@ import { preferences } from "../common/preferences.ts";
 import type { Signal } from "../common/signal.ts";
 
 import { type Viewer, bufferSetting } from "../session/viewer.ts";
+import type { AutoRotate } from "../view/auto_rotate.ts";
 import type { PointPicker } from "../view/picker.ts";
 import { button, element, icon } from "../widgets/element.ts";
 import { type MenuItem, createMenu } from "../widgets/menu.ts";
@@ -21,6 +22,7 @@ interface PanelActions {
   inspect: InspectParts;
   /** Clicks that select objects. */
   selection: PointPicker;
+  rotation: AutoRotate;
   /** Uploads a scene file and loads it. */
   upload(file: File): void;
   help(): void;
@@ -32,14 +34,24 @@ interface Panel {
   /** Whether it covers a part of the view at the right. */
   isBeside(): boolean;
   toggle(): void;
+  /** Begins or ends measuring distances. */
+  toggleMeasuring(): void;
+  /** Begins or ends choosing a place for an annotation. */
+  toggleAnnotating(): void;
 }
 
 const narrow = matchMedia("(max-width: 640px)");
 
 export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActions): Panel {
   const stream = createStreamSection(viewer);
+  const inspect = createInspectTab(viewer, actions.inspect);
   const tabs = createTabs("Panel", [
-    { id: "scene", label: "Scene", icon: "scene", body: createSceneTab(viewer, actions.selection, actions.upload) },
+    {
+      id: "scene",
+      label: "Scene",
+      icon: "scene",
+      body: createSceneTab(viewer, actions.selection, actions.rotation, actions.upload),
+    },
     {
       id: "settings",
       label: "Advanced",
@@ -52,7 +64,7 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
       id: "inspect",
       label: "Inspect",
       icon: "layers",
-      body: createInspectTab(viewer, actions.inspect),
+      body: inspect.node,
     },
     { id: "timing", label: "Timing", icon: "chart", body: createTimingTab(viewer, stream.node) },
   ]);
@@ -113,7 +125,8 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
   mountSheetDrag(header, () => open, toggle);
   restore();
   const isBeside = (): boolean => open && !narrow.matches;
-  return { resolution: stream.resolution, isBeside, toggle };
+  const { toggleMeasuring, toggleAnnotating } = inspect;
+  return { resolution: stream.resolution, isBeside, toggle, toggleMeasuring, toggleAnnotating };
 }
 
 /** On narrow screens the header is the sheet's handle: a swipe up opens it, down closes it. */

@@ -55,6 +55,10 @@ function deedOf(method: string, change: Change, schema: ControlGroup): string | 
       return `loaded ${change.scene?.name}`;
     case "bookmarks.changed":
       return "changed the bookmarks";
+    case "measurements.changed":
+      return "changed the measurements";
+    case "annotations.changed":
+      return "changed the annotations";
     case "camera.changed":
       return "moved the camera";
     default:

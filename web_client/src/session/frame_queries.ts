@@ -1,7 +1,7 @@
 // Questions about the frame: files of it, and the surface at a point.
 
 import type { Vector3 } from "heliograph/json.ts";
-import type { Capture, FrameCaptureParams, Inspection, Pick } from "heliograph/messages.ts";
+import type { Capture, FrameCaptureParams, Inspection, Pick, Snap } from "heliograph/messages.ts";
 import type { RpcPeer } from "heliograph/rpc.ts";
 import { captureBlob, thumbnailUrl } from "../common/image_files.ts";
 import type { ServerCapabilities } from "./server_capabilities.ts";
@@ -42,6 +42,21 @@ export class FrameQueries {
     if (!this.host.capabilities.has("scene.pick")) return null;
     try {
       return (await this.host.rpc.request("scene.pick", this.host.inFrame(x, y))).position;
+    } catch {
+      return null;
+    }
+  }
+
+  /**
+   * The exact point of a surface at a point of the view, or a vertex or edge near it unless `free`;
+   * null where there is none. Reports no errors.
+   */
+  async snap(x: number, y: number, free: boolean): Promise<Snap | null> {
+    const attract = { vertices: !free, edges: !free };
+    try {
+      const request = { ...this.host.inFrame(x, y), ...attract };
+      const snap = await this.host.rpc.request("scene.snap", request);
+      return snap.hit ? snap : null;
     } catch {
       return null;
     }

@@ -40,6 +40,12 @@ export class Membership {
     return this.mayChange || this.looksAround;
   }
 
+  /** Whether this page may measure and annotate. */
+  get mayAnnotate(): boolean {
+    const everyone = this.host.hello()?.annotators === "everyone" && !this.looksAround;
+    return this.mayChange || everyone;
+  }
+
   /** Whether the camera is this page's own. */
   get looksAround(): boolean {
     return this.controlState.value.kind === "looks_around";

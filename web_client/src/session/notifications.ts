@@ -10,6 +10,7 @@ import type {
 import type { CameraPose } from "../common/camera_pose.ts";
 import type { Signal } from "../common/signal.ts";
 import type { Bookmarks } from "./bookmarks.ts";
+import type { Marks } from "./marks/marks.ts";
 import type { NodeStore } from "./node_store.ts";
 import type { SceneLoading } from "./scene_loading.ts";
 import type { SceneParts } from "./scene_parts.ts";
@@ -24,6 +25,7 @@ interface Targets {
   loading: SceneLoading;
   history: UndoHistory;
   bookmarks: Bookmarks;
+  marks: Marks;
   stats: Signal<FrameStats | null>;
   viewRestore: ViewRestore;
   takeCamera(camera: CameraPose): void;
@@ -51,6 +53,10 @@ export function receiveNotification(targets: Targets, method: string, params: un
       break;
     case "bookmarks.changed":
       targets.bookmarks.take((params as Notifications["bookmarks.changed"]).list);
+      break;
+    case "measurements.changed":
+    case "annotations.changed":
+      targets.marks.notified(method, params);
       break;
     case "session.changed":
       targets.setSession(params as Notifications["session.changed"]);

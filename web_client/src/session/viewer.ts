@@ -24,6 +24,7 @@ import { Bookmarks } from "./bookmarks.ts";
 import { CameraMoves } from "./camera_moves.ts";
 import type { FileError } from "./file_errors.ts";
 import { FrameQueries } from "./frame_queries.ts";
+import { Marks } from "./marks/marks.ts";
 import { Membership } from "./membership.ts";
 import { NodeStore } from "./node_store.ts";
 import { receiveNotification } from "./notifications.ts";
@@ -52,6 +53,7 @@ export class Viewer {
   readonly stream: StreamRequests;
   readonly queries: FrameQueries;
   readonly bookmarks: Bookmarks;
+  readonly marks: Marks;
   readonly own: OwnSession;
   readonly history = new UndoHistory();
   readonly loading: SceneLoading;
@@ -164,13 +166,17 @@ export class Viewer {
       report: (error) => this.report(error),
     });
     this.nodes = new NodeStore(this);
-    this.bookmarks = new Bookmarks({
+    const marks = {
       rpc: this.rpc,
       capabilities: this.capabilities,
       scene: this.scene,
+      animation: this.animation,
+      history: this.history,
       isRestoring: () => this.viewRestore.pending !== null,
-      attempt: (action) => this.attempt(action),
-    });
+      attempt: (action: () => Promise<unknown>) => this.attempt(action),
+    };
+    this.bookmarks = new Bookmarks(marks);
+    this.marks = new Marks(marks);
     this.queries = new FrameQueries({
       rpc: this.rpc,
       capabilities: this.capabilities,
@@ -326,6 +332,7 @@ export class Viewer {
       await this.readScene();
       await this.fitFirstView();
       void this.bookmarks.read();
+      this.marks.read();
       this.sessionRestore.arrived(hello);
     }
   }
@@ -334,7 +341,7 @@ export class Viewer {
   private async viewArrived(hello: Hello): Promise<void> {
     this.sessionRestore.arrived(hello);
     await Promise.all([this.settings.load(), this.refreshScenes(), this.readScene()]);
-    if (this.mayChange) void this.bookmarks.restore();
+    if (this.mayChange) void this.bookmarks.restore().then(() => this.marks.restore());
     this.connection.release({ oldestRev: this.camera.value?.rev ?? 0 });
     await this.stream.resume();
   }
@@ -370,6 +377,7 @@ export class Viewer {
     await this.readScene();
     await this.capabilities.changedAt(this.camera.value?.rev ?? 0);
     void this.bookmarks.read();
+    this.marks.read();
   }
 
   async sceneChanged(info: SceneInfo): Promise<void> {

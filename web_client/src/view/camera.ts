@@ -146,6 +146,26 @@ export function fly(camera: CameraPose, right: number, up: number, forward: numb
   };
 }
 
+/** The sides from which a scene is seen; glTF's front is +Z. */
+export const viewSides = {
+  front: { toward: [0, 0, 1], up: worldUp },
+  back: { toward: [0, 0, -1], up: worldUp },
+  right: { toward: [1, 0, 0], up: worldUp },
+  left: { toward: [-1, 0, 0], up: worldUp },
+  top: { toward: [0, 1, 0], up: [0, 0, -1] },
+  bottom: { toward: [0, -1, 0], up: [0, 0, 1] },
+} satisfies Record<string, { toward: Vector3; up: Vector3 }>;
+
+export type ViewSide = keyof typeof viewSides;
+
+/** Shows the same target from one side, at the same distance. */
+export function seenFrom(camera: CameraPose, side: ViewSide): CameraPose {
+  const { toward, up } = viewSides[side];
+  const distance = length(subtract(camera.eye, camera.target));
+  const offset = scale(toward as Vector3, distance);
+  return { ...camera, eye: add(camera.target, offset), up: up as Vector3, name: null };
+}
+
 /** Centres a point of the world, seen from the same direction at `distance` metres. */
 export function focusOn(camera: CameraPose, point: Vector3, distance: number): CameraPose {
   const backward = normalize(subtract(camera.eye, camera.target));

@@ -12,6 +12,9 @@ export interface PointPicker {
 
 const maxMovement = 4; // CSS pixels
 
+/** The pickers of a surface that have a listener. */
+const picking = new WeakMap<HTMLElement, Set<PointPicker>>();
+
 export function createPicker(surface: HTMLElement, mark: HTMLElement): PointPicker {
   let listener: ClickListener | null = null;
   let pressed: { x: number; y: number } | null = null;
@@ -27,10 +30,14 @@ export function createPicker(surface: HTMLElement, mark: HTMLElement): PointPick
     const { left, top, width, height } = surface.getBoundingClientRect();
     listener((clientX - left) / width, (clientY - top) / height, event);
   });
-  return {
+  const active = picking.get(surface) ?? new Set();
+  picking.set(surface, active);
+  const picker: PointPicker = {
     onClick(next) {
       listener = next;
-      surface.classList.toggle("picking", next !== null);
+      if (next) active.add(picker);
+      else active.delete(picker);
+      surface.classList.toggle("picking", active.size > 0);
     },
     mark(x, y) {
       mark.hidden = false;
@@ -41,4 +48,5 @@ export function createPicker(surface: HTMLElement, mark: HTMLElement): PointPick
       mark.hidden = true;
     },
   };
+  return picker;
 }

@@ -1,18 +1,21 @@
 // The cameras of the scene, bookmarks and "fit into view".
 
 import type { Viewer } from "../../session/viewer.ts";
+import type { AutoRotate } from "../../view/auto_rotate.ts";
 import { button, element, setOptions } from "../../widgets/element.ts";
 import { field } from "../../widgets/field.ts";
 import { createBookmarkList } from "./bookmark_list.ts";
+import { createViewButtons } from "./view_buttons.ts";
 
 const freeView = "";
 
-export function createCameraFields(viewer: Viewer): HTMLElement[] {
+export function createCameraFields(viewer: Viewer, rotation: AutoRotate): HTMLElement[] {
   const bookmarks = createBookmarkList(viewer);
   const fit = button("Fit the scene into view (F)", "fit", () => void viewer.cameraMoves.fit());
   const bookmark = button("Bookmark this view (B)", "bookmark", bookmarks.add);
   viewer.addBookmark = bookmarks.add;
-  return [field("Camera", cameraPicker(viewer), fit, bookmark), bookmarks.node];
+  const views = createViewButtons(viewer, rotation);
+  return [field("Camera", cameraPicker(viewer), fit, bookmark), views, bookmarks.node];
 }
 
 function cameraPicker(viewer: Viewer): HTMLSelectElement {

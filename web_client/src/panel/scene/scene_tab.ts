@@ -2,6 +2,7 @@
 
 import type { SceneInfo } from "heliograph/messages.ts";
 import type { Viewer } from "../../session/viewer.ts";
+import type { AutoRotate } from "../../view/auto_rotate.ts";
 import type { PointPicker } from "../../view/picker.ts";
 import { element, icon, setText } from "../../widgets/element.ts";
 import { requiresControl } from "../../widgets/requires_control.ts";
@@ -21,6 +22,7 @@ export const appearanceGroups = ["exposure", "tone_map", "environment", "backgro
 export function createSceneTab(
   viewer: Viewer,
   picker: PointPicker,
+  rotation: AutoRotate,
   upload: (file: File) => void,
 ): HTMLElement {
   const facts = element("p", { class: "facts" });
@@ -41,7 +43,7 @@ export function createSceneTab(
       facts,
       warnings,
       ...createPartFields(viewer),
-      ...createCameraFields(viewer),
+      ...createCameraFields(viewer, rotation),
       ...createEnvironmentField(viewer, upload),
     ),
     createNodeSection(viewer, picker),

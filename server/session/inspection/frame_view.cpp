@@ -1,0 +1,43 @@
+#include "session/inspection/frame_view.hpp"
+
+#include <cmath>
+
+#include "session/inspection/anchors.hpp"
+
+namespace heliograph::session {
+
+FrameView::FrameView(const RenderState& state)
+    : pose_(pose_at(*state.scene, state.animation.clip, state.animation.at(state.now()))),
+      camera_(state.camera_follows ? scene::camera_at(*state.scene, state.camera, pose_)
+                                   : state.camera),
+      forward_(glm::normalize(camera_.target - camera_.eye)),
+      aspect_(static_cast<float>(state.width) / static_cast<float>(state.height)) {}
+
+glm::vec3 FrameView::direction_to(const glm::vec3& point) const {
+  return camera_.orthographic_height > 0.0f ? forward_ : glm::normalize(point - camera_.eye);
+}
+
+float FrameView::distance_to(const glm::vec3& point) const {
+  const glm::vec3 offset = point - camera_.eye;
+  return camera_.orthographic_height > 0.0f ? glm::dot(offset, forward_) : glm::length(offset);
+}
+
+float FrameView::height_at(const glm::vec3& point) const {
+  if (camera_.orthographic_height > 0.0f) return camera_.orthographic_height;
+  const float depth = glm::dot(point - camera_.eye, forward_);
+  return 2.0f * depth * std::tan(0.5f * glm::radians(camera_.vertical_fov));
+}
+
+std::optional<glm::vec2> FrameView::image_point(const glm::vec3& point) const {
+  const glm::vec3 offset = point - camera_.eye;
+  if (glm::dot(offset, forward_) <= 0.0f) return std::nullopt;
+  const glm::vec3 right = glm::normalize(glm::cross(forward_, camera_.up));
+  const glm::vec3 up = glm::cross(right, forward_);
+  const float height = height_at(point);
+  const glm::vec2 place(0.5f + glm::dot(offset, right) / (height * aspect_),
+                        0.5f - glm::dot(offset, up) / height);
+  const bool within = place.x >= 0.0f && place.y >= 0.0f && place.x <= 1.0f && place.y <= 1.0f;
+  return within ? std::optional(place) : std::nullopt;
+}
+
+}  // namespace heliograph::session

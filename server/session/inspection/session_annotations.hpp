@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+
+#include "session/state/session_core.hpp"
+
+namespace heliograph::session {
+
+/// Commands on the annotations of a session's scene. Frames do not depend on them. Thread safe.
+/// `by` is the viewer that asks, empty for a caller without a stream.
+class SessionAnnotations {
+ public:
+  explicit SessionAnnotations(SessionCore& core) : core_(core) {}
+
+  protocol::AnnotationList list() const;
+  protocol::Result<protocol::AnnotationList> add(const protocol::AnnotationAdd& request,
+                                                 const std::string& by);
+  protocol::Result<protocol::AnnotationList> edit(const protocol::AnnotationEdit& request,
+                                                  const std::string& by);
+  protocol::Result<protocol::AnnotationList> remove(const protocol::AnnotationId& request,
+                                                    const std::string& by);
+  protocol::Result<protocol::AnnotationList> clear(const std::string& by);
+
+ private:
+  /// Changes the annotations by `change(part)`, under the lock.
+  template <class Change>
+  protocol::Result<protocol::AnnotationList> change(const std::string& by, const Change& change);
+  std::string name_of(const std::string& viewer) const;
+
+  SessionCore& core_;
+};
+
+}  // namespace heliograph::session

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+
+#include "session/state/session_core.hpp"
+
+namespace heliograph::session {
+
+/// Commands on what is measured in a session's scene. Frames do not depend on it. Thread safe. `by`
+/// is the viewer that asks, empty for a caller without a stream.
+class SessionMeasurements {
+ public:
+  explicit SessionMeasurements(SessionCore& core) : core_(core) {}
+
+  protocol::MeasurementList list() const;
+  protocol::Result<protocol::MeasurementList> add(const protocol::MeasurementAdd& request,
+                                                  const std::string& by);
+  protocol::Result<protocol::MeasurementList> remove(const protocol::MeasurementId& request,
+                                                     const std::string& by);
+  protocol::Result<protocol::MeasurementList> clear(const std::string& by);
+  protocol::Result<protocol::MeasurementList> set_unit(const protocol::MeasurementUnit& request,
+                                                       const std::string& by);
+
+ private:
+  /// Changes the measurements by `change(part)`, under the lock.
+  template <class Change>
+  protocol::Result<protocol::MeasurementList> change(const std::string& by, const Change& change);
+
+  SessionCore& core_;
+};
+
+}  // namespace heliograph::session
