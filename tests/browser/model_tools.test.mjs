@@ -7,6 +7,7 @@ import { Stage } from "./harness/stage.mjs";
 
 let start; // the camera that the scene begins with
 const stage = new Stage({
+  resolution: "half",
   view: { viewport: { width: 1000, height: 900 } },
   prepare: async (page) => {
     const { eye, target, up, vertical_fov } = await call("camera.get");
