@@ -58,14 +58,15 @@ struct Annotation {
 struct AnnotationList {
   std::optional<std::string> scene;
   std::vector<Annotation> annotations;
-  std::uint32_t rev = 0;
+  std::uint32_t changes = 0;
 
   static constexpr auto fields() {
     return std::tuple{
         field("scene", &AnnotationList::scene, "The scene that the session shows; null: none.")
             .or_null(),
         field("annotations", &AnnotationList::annotations, "In the order of their ids."),
-        field("rev", &AnnotationList::rev, "Counts the changes of the session's annotations."),
+        field("changes", &AnnotationList::changes,
+              "Counts the changes of the session's annotations."),
     };
   }
   bool operator==(const AnnotationList&) const = default;

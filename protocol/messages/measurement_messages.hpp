@@ -162,7 +162,7 @@ struct MeasurementList {
   std::optional<std::string> scene;
   LengthUnit unit = LengthUnit::m;
   std::vector<Measurement> measurements;
-  std::uint32_t rev = 0;
+  std::uint32_t changes = 0;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -170,7 +170,8 @@ struct MeasurementList {
             .or_null(),
         field("unit", &MeasurementList::unit, "Unit of the texts."),
         field("measurements", &MeasurementList::measurements, "In the order of their ids."),
-        field("rev", &MeasurementList::rev, "Counts the changes of the session's measurements."),
+        field("changes", &MeasurementList::changes,
+              "Counts the changes of the session's measurements."),
     };
   }
   bool operator==(const MeasurementList&) const = default;

@@ -1039,10 +1039,10 @@ export interface Measurement {
 
 /** Result of measurements.list. */
 export interface MeasurementList {
+  /** Counts the changes of the session's measurements. */
+  changes: number;
   /** In the order of their ids. */
   measurements: Measurement[];
-  /** Counts the changes of the session's measurements. */
-  rev: number;
   /** The scene that the session shows; null: none. */
   scene: string | null;
   /** Unit of the texts. */
@@ -1096,7 +1096,7 @@ export interface AnnotationList {
   /** In the order of their ids. */
   annotations: Annotation[];
   /** Counts the changes of the session's annotations. */
-  rev: number;
+  changes: number;
   /** The scene that the session shows; null: none. */
   scene: string | null;
 }

@@ -388,9 +388,9 @@ class Play:
             if session.lockstep or actor in self.paused:
                 continue
             deadline = time.monotonic() + STEP_TIMEOUT
-            while getattr(viewer, "checked", {}).get("state_rev", 0) < session.rev:
+            while (seen := getattr(viewer, "checked", {}).get("state_rev", 0)) < session.rev:
                 require(time.monotonic() < deadline,
-                        f"{actor} sees rev {viewer.checked['state_rev']}, not {session.rev}")
+                        f"{actor} sees rev {seen}, not {session.rev}")
                 if actor == "slow":
                     self.acknowledge(actor, viewer)
                     await viewer.notify("stream.ack", {"frame_seq": viewer.newest_seq})

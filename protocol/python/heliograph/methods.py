@@ -68,7 +68,7 @@ class Annotations(_Group):
     def list(self) -> Dict[str, Any]:
         """Lists the annotations of the scene, where they are at this moment of the animation.
 
-        Returns: annotations, rev, scene.
+        Returns: annotations, changes, scene.
         """
         return self._call("annotations.list", {})
 
@@ -93,7 +93,7 @@ class Annotations(_Group):
         author: Who says it; absent: the viewer's display name, if it has one.
         id: Its id, such as that of one that was removed; absent: the next one.
 
-        Returns: annotations, rev, scene.
+        Returns: annotations, changes, scene.
         """
         return self._call("annotations.add", _given({
             "surface": surface, "text": text, "author": author, "id": id}))
@@ -104,7 +104,7 @@ class Annotations(_Group):
         id: An id from annotations.list.
         text: What it says from now on.
 
-        Returns: annotations, rev, scene.
+        Returns: annotations, changes, scene.
         """
         return self._call("annotations.edit", _given({"id": id, "text": text}))
 
@@ -113,14 +113,14 @@ class Annotations(_Group):
 
         id: An id from annotations.list.
 
-        Returns: annotations, rev, scene.
+        Returns: annotations, changes, scene.
         """
         return self._call("annotations.remove", _given({"id": id}))
 
     def clear(self) -> Dict[str, Any]:
         """Removes all annotations of the scene.
 
-        Returns: annotations, rev, scene.
+        Returns: annotations, changes, scene.
         """
         return self._call("annotations.clear", {})
 
@@ -427,7 +427,7 @@ class Measurements(_Group):
     def list(self) -> Dict[str, Any]:
         """Lists what has been measured in the scene, as it is at this moment of the animation.
 
-        Returns: measurements, rev, scene, unit.
+        Returns: changes, measurements, scene, unit.
         """
         return self._call("measurements.list", {})
 
@@ -446,7 +446,7 @@ class Measurements(_Group):
         nodes: Of a size: ids from nodes.list.
         points: Of a distance or angle.
 
-        Returns: measurements, rev, scene, unit.
+        Returns: changes, measurements, scene, unit.
         """
         return self._call("measurements.add", _given({
             "kind": kind, "id": id, "nodes": nodes, "points": points}))
@@ -456,14 +456,14 @@ class Measurements(_Group):
 
         id: An id from measurements.list.
 
-        Returns: measurements, rev, scene, unit.
+        Returns: changes, measurements, scene, unit.
         """
         return self._call("measurements.remove", _given({"id": id}))
 
     def clear(self) -> Dict[str, Any]:
         """Removes all measurements of the scene.
 
-        Returns: measurements, rev, scene, unit.
+        Returns: changes, measurements, scene, unit.
         """
         return self._call("measurements.clear", {})
 
@@ -472,7 +472,7 @@ class Measurements(_Group):
 
         unit: Unit of the texts from now on.
 
-        Returns: measurements, rev, scene, unit.
+        Returns: changes, measurements, scene, unit.
         """
         return self._call("measurements.unit", _given({"unit": unit}))
 

@@ -70,12 +70,12 @@ void AnnotationSet::clear(const ScenePart& part) {
 
 void AnnotationSet::replace(Entries entries) {
   entries_ = std::make_shared<const Entries>(std::move(entries));
-  ++rev_;
+  ++changes_;
 }
 
 protocol::AnnotationList AnnotationSet::list(const ScenePart& part, const scene::Scene& scene,
                                              const scene::Pose& pose) const {
-  protocol::AnnotationList list{.scene = part.name, .annotations = {}, .rev = rev_};
+  protocol::AnnotationList list{.scene = part.name, .annotations = {}, .changes = changes_};
   for (const Entry& entry : *entries_) {
     if (entry.part != part || !scene::has_triangle(scene, entry.anchor)) continue;
     const scene::SurfaceLocation location = scene::locate(scene, pose, entry.anchor);

@@ -43,7 +43,7 @@ class AnnotationSet {
 
   std::shared_ptr<const Entries> entries_ = std::make_shared<const Entries>();
   std::uint32_t last_id_ = 0;
-  std::uint32_t rev_ = 0;
+  std::uint32_t changes_ = 0;
 };
 
 }  // namespace heliograph::session

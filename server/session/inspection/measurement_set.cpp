@@ -119,18 +119,18 @@ void MeasurementSet::clear(const ScenePart& part) {
 
 void MeasurementSet::set_unit(protocol::LengthUnit unit) {
   unit_ = unit;
-  ++rev_;
+  ++changes_;
 }
 
 void MeasurementSet::replace(Entries entries) {
   entries_ = std::make_shared<const Entries>(std::move(entries));
-  ++rev_;
+  ++changes_;
 }
 
 protocol::MeasurementList MeasurementSet::list(const ScenePart& part, const scene::Scene& scene,
                                                const scene::Pose& pose) const {
   protocol::MeasurementList list{
-      .scene = part.name, .unit = unit_, .measurements = {}, .rev = rev_};
+      .scene = part.name, .unit = unit_, .measurements = {}, .changes = changes_};
   for (const Entry& entry : *entries_) {
     const bool fits = std::ranges::all_of(entry.points, [&](const Point& point) {
       return !point.anchor || scene::has_triangle(scene, *point.anchor);

@@ -53,7 +53,7 @@ class MeasurementSet {
   std::shared_ptr<const Entries> entries_ = std::make_shared<const Entries>();
   protocol::LengthUnit unit_ = protocol::LengthUnit::m;
   std::uint32_t last_id_ = 0;
-  std::uint32_t rev_ = 0;
+  std::uint32_t changes_ = 0;
 };
 
 }  // namespace heliograph::session

@@ -105,7 +105,7 @@ TEST_F(MeasurementSetTest, RefusesWhatDoesNotFitByField) {
   EXPECT_EQ(path({.kind = MeasurementKind::size, .nodes = {7}}), "nodes[0]");
   EXPECT_EQ(path({.kind = MeasurementKind::size, .nodes = {0}}), "nodes");
   EXPECT_TRUE(list().measurements.empty());
-  EXPECT_EQ(list().rev, 0u) << "nothing changed";
+  EXPECT_EQ(list().changes, 0u) << "nothing changed";
 }
 
 TEST_F(MeasurementSetTest, KeepsIdsSoThatARemovedOneCanReturn) {
