@@ -72,7 +72,7 @@ function main(): void {
   });
   const points = new PointTool({
     canvas,
-    picker: createPicker(canvas, find("mark")), // before others, so that it has the click first
+    picker: createPicker(canvas, find("mark")), // before others, so that it takes the click first
     snap: (x, y, free) => viewer.queries.snap(x, y, free),
   });
   mountMarks(find("marks"), viewer, points);

@@ -3,7 +3,10 @@
 type ClickListener = (x: number, y: number, event: PointerEvent) => void;
 
 export interface PointPicker {
-  /** Sends every click, in fractions of width and height, to the function; null stops it. */
+  /**
+   * Sends every click, in fractions of width and height, to the function, but for those that another
+   * picker has taken by `preventDefault`; null stops it.
+   */
   onClick(listener: ClickListener | null): void;
   /** Marks a point of the image. */
   mark(x: number, y: number): void;
@@ -25,7 +28,7 @@ export function createPicker(surface: HTMLElement, mark: HTMLElement): PointPick
     const { clientX, clientY } = event;
     const from = pressed;
     pressed = null;
-    if (!listener || !from) return;
+    if (!listener || !from || event.defaultPrevented) return;
     if (Math.hypot(clientX - from.x, clientY - from.y) > maxMovement) return;
     const { left, top, width, height } = surface.getBoundingClientRect();
     listener((clientX - left) / width, (clientY - top) / height, event);

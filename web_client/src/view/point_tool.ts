@@ -48,7 +48,7 @@ export class PointTool {
     this.clearPreview();
     this.task.set(task);
     this.host.picker.onClick((x, y, event) => {
-      event.stopImmediatePropagation();
+      event.preventDefault(); // it selects nothing
       void this.place(x, y, event.altKey);
     });
   }
