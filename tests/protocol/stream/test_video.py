@@ -135,7 +135,8 @@ class Video(ServerTestCase):
                 async with VideoViewer(self.server) as newcomer:
                     first = await newcomer.next_frame()
                     self.assertTrue(first.header["flags"] & FLAG_KEY, "a JPEG, or a key frame")
-                    joined = await newcomer.video_frames(4)
+                    joined = [first] if first.header["codec"] == H264 else []
+                    joined += await newcomer.video_frames(4 - len(joined))
                     self.assertTrue(joined[0].header["flags"] & FLAG_KEY)
                     for frame in joined[1:]:
                         self.assertFalse(frame.header["flags"] & FLAG_KEY)
