@@ -25,8 +25,7 @@ async function otherSession() {
   return sessions.find(({ name }) => name !== "main");
 }
 
-stage.test("comparing a preset opens a second session that follows the camera", async (t) => {
-  if (await stage.lacks(t, "session.create")) return;
+stage.test("comparing a preset opens a second session that follows the camera", async () => {
   const { page } = await stage.watch();
   await openTab(page, "inspect");
   await page.locator("select[name=compare]").selectOption("preset:svgf");
@@ -73,8 +72,7 @@ stage.test("comparing a preset opens a second session that follows the camera", 
   assert.equal(await divider.isVisible(), false);
 });
 
-stage.test("the second session follows light, material, environment, size and scene", async (t) => {
-  if (await stage.lacks(t, "session.create")) return;
+stage.test("the second session follows light, material, environment, size and scene", async () => {
   const { server } = stage;
   const { page } = await stage.watch();
   await openTab(page, "inspect");
@@ -138,8 +136,7 @@ stage.test("the second session follows light, material, environment, size and sc
 
 stage.test(
   "a comparison says what it prepares, and shows no figure before it means something",
-  async (t) => {
-    if (await stage.lacks(t, "session.create")) return;
+  async () => {
     const { page } = await stage.watch();
     await openTab(page, "inspect");
     const facts = page.locator("[data-figure-of=similarity]");
@@ -165,8 +162,7 @@ stage.test(
   },
 );
 
-stage.test("two frames are shown side by side, or their difference", async (t) => {
-  if (await stage.lacks(t, "session.create")) return;
+stage.test("two frames are shown side by side, or their difference", async () => {
   const { page } = await stage.watch({ viewport: { width: 1200, height: 500 } });
   await settle(page, stage.server);
   const lightness = async (name) =>
@@ -208,8 +204,7 @@ stage.test("two frames are shown side by side, or their difference", async (t) =
   );
 });
 
-stage.test("a history buffer is overlaid", async (t) => {
-  if (await stage.lacks(t, "session.create")) return;
+stage.test("a history buffer is overlaid", async () => {
   const { page } = await stage.watch();
   await openTab(page, "inspect");
   const select = page.locator("select[name=compare]");

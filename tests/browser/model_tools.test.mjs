@@ -24,8 +24,7 @@ const hidden = async () =>
 const measured = async () => (await call("measurements.list")).measurements;
 const clickAt = (page, x, y) => page.mouse.click(x * 1000, y * 900);
 
-stage.test("a click in the view selects an object, which the tree and its properties show", async (t) => {
-  if (await stage.lacks(t, "nodes.list")) return;
+stage.test("a click in the view selects an object, which the tree and its properties show", async () => {
   const { page } = await stage.sharedViewer();
   const point = { x: 0.3, y: 600 / 900 };
   const { node } = await call("scene.pick", point);
@@ -45,8 +44,7 @@ stage.test("a click in the view selects an object, which the tree and its proper
   await eventually(async () => (await call("camera.get")).rev > before.rev, "another camera");
 });
 
-stage.test("keys select, hide and show objects; undo takes it back", async (t) => {
-  if (await stage.lacks(t, "nodes.list")) return;
+stage.test("keys select, hide and show objects; undo takes it back", async () => {
   const { page } = await stage.sharedViewer();
   await page.getByRole("tree").focus();
   await page.keyboard.press("Home");
@@ -72,8 +70,7 @@ stage.test("keys select, hide and show objects; undo takes it back", async (t) =
   await eventually(async () => (await call("nodes.list")).isolated.length === 0, "all shown");
 });
 
-stage.test("another viewer's selection and a search change the rows", async (t) => {
-  if (await stage.lacks(t, "nodes.list")) return;
+stage.test("another viewer's selection and a search change the rows", async () => {
   const { page } = await stage.sharedViewer();
   const { nodes } = await call("nodes.list");
   const named = nodes.find(({ name, meshes }) => name !== "" && meshes > 0);
@@ -90,8 +87,7 @@ stage.test("another viewer's selection and a search change the rows", async (t) 
   await page.getByRole("searchbox", { name: "Search objects" }).fill("");
 });
 
-stage.test("two clicks measure a distance between exact points, which undo removes", async (t) => {
-  if (await stage.lacks(t, "measurements.add")) return;
+stage.test("two clicks measure a distance between exact points, which undo removes", async () => {
   const { page } = await stage.sharedViewer();
   await openTab(page, "inspect");
   await call("camera.set", start);
@@ -131,8 +127,7 @@ stage.test("two clicks measure a distance between exact points, which undo remov
   await eventually(async () => (await measured())[0]?.id === one.id, "the measurement again");
 });
 
-stage.test("keys alone measure, and another client's unit and size are shown", async (t) => {
-  if (await stage.lacks(t, "measurements.add")) return;
+stage.test("keys alone measure, and another client's unit and size are shown", async () => {
   const { page } = await stage.sharedViewer();
   await openTab(page, "inspect");
   await call("measurements.clear");
@@ -163,8 +158,7 @@ stage.test("keys alone measure, and another client's unit and size are shown", a
   await eventually(async () => (await measured()).length === 1, "the size removed");
 });
 
-stage.test("an annotation is written, shared, and faint behind a surface", async (t) => {
-  if (await stage.lacks(t, "annotations.add")) return;
+stage.test("an annotation is written, shared, and faint behind a surface", async () => {
   const { page } = await stage.sharedViewer();
   await openTab(page, "inspect");
   await call("measurements.clear");

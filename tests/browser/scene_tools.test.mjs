@@ -12,8 +12,7 @@ const stage = new Stage({
 const sun = async () =>
   (await stage.server.call("lights.list")).lights.find(({ type }) => type === "directional");
 
-stage.test("the sun is moved by its dial, resized and reset", async (t) => {
-  if (await stage.lacks(t, "lights.patch")) return;
+stage.test("the sun is moved by its dial, resized and reset", async () => {
   const { page } = await stage.sharedViewer();
   await openTab(page, "scene");
   const before = await sun();
@@ -46,8 +45,7 @@ stage.test("the sun is moved by its dial, resized and reset", async (t) => {
   );
 });
 
-stage.test("a material is changed, and a roughness sweep restores its value", async (t) => {
-  if (await stage.lacks(t, "materials.patch")) return;
+stage.test("a material is changed, and a roughness sweep restores its value", async () => {
   const { page } = await stage.sharedViewer();
   await openTab(page, "scene");
   await page.locator('[data-section="materials"] summary').click();
@@ -82,8 +80,7 @@ stage.test("a material is changed, and a roughness sweep restores its value", as
   );
 });
 
-stage.test("a click lists the value of every buffer at a pixel", async (t) => {
-  if (await stage.lacks(t, "frame.inspect")) return;
+stage.test("a click lists the value of every buffer at a pixel", async () => {
   const { page } = await stage.sharedViewer();
   await openTab(page, "inspect");
   await page.getByRole("switch", { name: "Inspect pixels" }).click();
@@ -107,8 +104,7 @@ stage.test("a click lists the value of every buffer at a pixel", async (t) => {
   assert.equal(await page.locator("#mark").isVisible(), false);
 });
 
-stage.test("a double click focuses on the surface", async (t) => {
-  if (await stage.lacks(t, "scene.pick")) return;
+stage.test("a double click focuses on the surface", async () => {
   const { page } = await stage.sharedViewer();
   const { position } = await stage.server.call("scene.pick", { x: 0.3, y: 600 / 900 });
   await page.mouse.dblclick(300, 600);

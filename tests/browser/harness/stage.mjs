@@ -110,14 +110,6 @@ export class Stage {
     return this.shared;
   }
 
-  /** Whether the server lacks a method; the test is then skipped. */
-  async lacks(t, method) {
-    const { methods } = await this.server.call("rpc.discover");
-    const lacks = !methods.some(({ name }) => name === method);
-    if (lacks) t.skip(`the server has no ${method}`);
-    return lacks;
-  }
-
   /** Stops the server and starts another one at the same address. */
   async restartServer(args) {
     const { port } = this.server;
