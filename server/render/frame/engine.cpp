@@ -215,8 +215,7 @@ const std::shared_ptr<const scene::Scene>& scene_of(const SceneResources& resour
 }
 
 scene::KeptTextures kept_textures(Engine& engine) {
-  const gpu::Device& device = engine.parts().device;
-  return device.is_cpu() ? heap_textures(device) : scene::KeptTextures();
+  return kept_textures(engine.parts().device);
 }
 
 std::uint64_t memory_bytes(const SceneResources& resources) {

@@ -12,4 +12,9 @@ inline scene::KeptTextures heap_textures(const gpu::Device& device) {
   return {longest_heap_side, device.limits().maxTexelBufferElements};
 }
 
+/// What uploads to the device need of images: all levels, unless they go into a heap.
+inline scene::KeptTextures kept_textures(const gpu::Device& device) {
+  return device.is_cpu() ? heap_textures(device) : scene::KeptTextures();
+}
+
 }  // namespace heliograph::render

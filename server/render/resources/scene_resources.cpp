@@ -278,8 +278,7 @@ void SceneResources::upload_tables(const gpu::Device& device, bool host_kernels)
 void SceneResources::upload_textures(const UploadProgress& progress, const ImageDone& image_done) {
   const auto& images = scene->images;
   TextureHeapWriter heap(device_, *scene);
-  const scene::KeptTextures kept =
-      device_.is_cpu() ? heap_textures(device_) : scene::KeptTextures();
+  const scene::KeptTextures kept = kept_textures(device_);
   const std::uint32_t longest = scene::longest_side_that_fits(images, kept).value_or(1);
   for (std::size_t i = 0; i < images.size(); ++i) {
     progress("textures", 0.15f + 0.3f * static_cast<float>(i) / static_cast<float>(images.size()));
