@@ -137,9 +137,7 @@ const scene::Clip* choose_clip(const scene::Scene& scene, const protocol::Render
 scene::Camera posed(const scene::Scene& scene, const scene::Camera& camera, const scene::Clip* clip,
                     double seconds) {
   if (!clip || !scene::carries(scene, *clip, camera)) return camera;
-  scene::Pose pose = scene::rest_pose(scene);
-  scene::evaluate(scene, *clip, seconds, pose);
-  return scene::camera_at(scene, camera, pose);
+  return scene::camera_at(scene, camera, scene::pose_at(scene, clip, seconds));
 }
 
 /// The camera carried around the vertical axis through the middle of the scene.

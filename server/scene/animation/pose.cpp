@@ -103,6 +103,12 @@ const Clip* find_clip(const Scene& scene, std::string_view name) {
   return found == scene.clips.end() ? nullptr : &*found;
 }
 
+Pose pose_at(const Scene& scene, const Clip* clip, double seconds) {
+  Pose pose = rest_pose(scene);
+  if (clip) evaluate(scene, *clip, seconds, pose);
+  return pose;
+}
+
 Camera camera_at(const Scene& scene, const Camera& camera, const Pose& pose) {
   if (!camera.node) return camera;
   return place_camera(camera, camera.name, pose.worlds[*camera.node], scene.bounds);

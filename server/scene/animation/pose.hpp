@@ -23,6 +23,9 @@ const Clip* find_clip(const Scene& scene, std::string_view name);
 /// not animate take their default pose. Clips loop: times beyond the end wrap around.
 void evaluate(const Scene& scene, const Clip& clip, double seconds, Pose& pose);
 
+/// That of `clip` at `seconds`; without a clip the file's.
+Pose pose_at(const Scene& scene, const Clip* clip, double seconds);
+
 /// A camera of the scene in `pose`: clips move cameras with their nodes.
 Camera camera_at(const Scene& scene, const Camera& camera, const Pose& pose);
 

@@ -65,12 +65,4 @@ protocol::SurfaceAnchor to_protocol(const scene::Scene& scene, const scene::Surf
           .barycentrics = to_protocol(anchor.barycentrics)};
 }
 
-scene::Pose pose_at(const scene::Scene& scene, const std::string& clip, double seconds) {
-  scene::Pose pose = scene::rest_pose(scene);
-  if (const scene::Clip* const found = scene::find_clip(scene, clip)) {
-    scene::evaluate(scene, *found, seconds, pose);
-  }
-  return pose;
-}
-
 }  // namespace heliograph::session

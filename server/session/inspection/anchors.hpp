@@ -15,7 +15,4 @@ protocol::Result<scene::SurfaceAnchor> to_anchor(const scene::Scene& scene,
                                                  const std::string& path);
 protocol::SurfaceAnchor to_protocol(const scene::Scene& scene, const scene::SurfaceAnchor& anchor);
 
-/// The pose of a clip, by name, at `seconds`; without one that of the file.
-scene::Pose pose_at(const scene::Scene& scene, const std::string& clip, double seconds);
-
 }  // namespace heliograph::session

@@ -1,14 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <string>
-#include <vector>
 
 #include "protocol/messages/annotation_messages.hpp"
 #include "protocol/result.hpp"
 #include "scene/surface/surface_anchor.hpp"
-#include "session/inspection/scene_part.hpp"
+#include "session/inspection/marks.hpp"
 
 namespace heliograph::session {
 
@@ -20,8 +18,10 @@ class AnnotationSet {
   protocol::Result<void> add(const ScenePart& part, const scene::Scene& scene,
                              const protocol::AnnotationAdd& request, const std::string& author);
   protocol::Result<void> edit(const ScenePart& part, const protocol::AnnotationEdit& request);
-  protocol::Result<void> remove(const ScenePart& part, std::uint32_t id);
-  void clear(const ScenePart& part);
+  protocol::Result<void> remove(const ScenePart& part, std::uint32_t id) {
+    return marks_.remove(part, id);
+  }
+  void clear(const ScenePart& part) { marks_.clear(part); }
 
   /// Where they are in a pose of the scene. What no longer fits a file that was changed is left
   /// out.
@@ -37,13 +37,8 @@ class AnnotationSet {
     scene::SurfaceAnchor anchor;
     protocol::SurfaceAnchor surface;  // the same, as the protocol has it
   };
-  using Entries = std::vector<Entry>;
 
-  void replace(Entries entries);
-
-  std::shared_ptr<const Entries> entries_ = std::make_shared<const Entries>();
-  std::uint32_t last_id_ = 0;
-  std::uint32_t changes_ = 0;
+  Marks<Entry> marks_{{.article = "an", .name = "annotation", .most = protocol::max_annotations}};
 };
 
 }  // namespace heliograph::session

@@ -2,12 +2,13 @@
 
 #include <cmath>
 
-#include "session/inspection/anchors.hpp"
+#include "scene/camera.hpp"
 
 namespace heliograph::session {
 
 FrameView::FrameView(const RenderState& state)
-    : pose_(pose_at(*state.scene, state.animation.clip, state.animation.at(state.now()))),
+    : pose_(scene::pose_at(*state.scene, scene::find_clip(*state.scene, state.animation.clip),
+                           state.animation.at(state.now()))),
       camera_(state.camera_follows ? scene::camera_at(*state.scene, state.camera, pose_)
                                    : state.camera),
       forward_(glm::normalize(camera_.target - camera_.eye)),
@@ -29,13 +30,10 @@ float FrameView::height_at(const glm::vec3& point) const {
 }
 
 std::optional<glm::vec2> FrameView::image_point(const glm::vec3& point) const {
-  const glm::vec3 offset = point - camera_.eye;
-  if (glm::dot(offset, forward_) <= 0.0f) return std::nullopt;
-  const glm::vec3 right = glm::normalize(glm::cross(forward_, camera_.up));
-  const glm::vec3 up = glm::cross(right, forward_);
-  const float height = height_at(point);
-  const glm::vec2 place(0.5f + glm::dot(offset, right) / (height * aspect_),
-                        0.5f - glm::dot(offset, up) / height);
+  const glm::vec4 seen = scene::view_matrix(camera_) * glm::vec4(point, 1.0f);
+  if (seen.z >= 0.0f) return std::nullopt;
+  const glm::vec4 clip = scene::projection_matrix(camera_, aspect_) * seen;
+  const glm::vec2 place = 0.5f + 0.5f * glm::vec2(clip) / clip.w;
   const bool within = place.x >= 0.0f && place.y >= 0.0f && place.x <= 1.0f && place.y <= 1.0f;
   return within ? std::optional(place) : std::nullopt;
 }

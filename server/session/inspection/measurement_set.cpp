@@ -59,7 +59,7 @@ Result<void> MeasurementSet::add(const ScenePart& part, const scene::Scene& scen
                                  const NodeState& nodes, const protocol::MeasurementAdd& request) {
   if (const Result<void> fits = check_shape(request); !fits) return fits;
   Entry entry{.part = part,
-              .id = request.id.value_or(last_id_ + 1),
+              .id = request.id.value_or(marks_.next_id()),
               .kind = request.kind,
               .points = {},
               .nodes = request.nodes,
@@ -85,53 +85,19 @@ Result<void> MeasurementSet::add(const ScenePart& part, const scene::Scene& scen
     entry.bounds = exact_bounds(scene, nodes.within(request.nodes));
     if (entry.bounds.empty()) return error::invalid("nodes", "have no meshes to measure");
   }
-  Entries entries = *entries_;
-  const auto place = std::ranges::lower_bound(entries, entry.id, {}, &Entry::id);
-  if (place != entries.end() && place->id == entry.id) {
-    return error::conflict("id", "there is a measurement " + std::to_string(entry.id));
-  }
-  if (entries.size() >= protocol::max_measurements) {
-    return error::full("the session has no room for more measurements: remove one",
-                       std::to_string(protocol::max_measurements) + " of all scenes");
-  }
-  last_id_ = std::max(last_id_, entry.id);
-  entries.insert(place, std::move(entry));
-  replace(std::move(entries));
-  return {};
-}
-
-Result<void> MeasurementSet::remove(const ScenePart& part, std::uint32_t id) {
-  Entries entries = *entries_;
-  const auto removed = std::erase_if(
-      entries, [&](const Entry& entry) { return entry.part == part && entry.id == id; });
-  if (removed == 0) {
-    return error::not_found("id", "the scene has no measurement " + std::to_string(id));
-  }
-  replace(std::move(entries));
-  return {};
-}
-
-void MeasurementSet::clear(const ScenePart& part) {
-  Entries entries = *entries_;
-  std::erase_if(entries, [&](const Entry& entry) { return entry.part == part; });
-  replace(std::move(entries));
+  return marks_.add(std::move(entry));
 }
 
 void MeasurementSet::set_unit(protocol::LengthUnit unit) {
   unit_ = unit;
-  ++changes_;
-}
-
-void MeasurementSet::replace(Entries entries) {
-  entries_ = std::make_shared<const Entries>(std::move(entries));
-  ++changes_;
+  marks_.changed();
 }
 
 protocol::MeasurementList MeasurementSet::list(const ScenePart& part, const scene::Scene& scene,
                                                const scene::Pose& pose) const {
   protocol::MeasurementList list{
-      .scene = part.name, .unit = unit_, .measurements = {}, .changes = changes_};
-  for (const Entry& entry : *entries_) {
+      .scene = part.name, .unit = unit_, .measurements = {}, .changes = marks_.changes()};
+  for (const Entry& entry : marks_.entries()) {
     const bool fits = std::ranges::all_of(entry.points, [&](const Point& point) {
       return !point.anchor || scene::has_triangle(scene, *point.anchor);
     });

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,7 +8,7 @@
 #include "protocol/messages/measurement_messages.hpp"
 #include "protocol/result.hpp"
 #include "scene/surface/surface_anchor.hpp"
-#include "session/inspection/scene_part.hpp"
+#include "session/inspection/marks.hpp"
 #include "session/nodes/node_state.hpp"
 
 namespace heliograph::session {
@@ -21,8 +20,10 @@ class MeasurementSet {
   /// `scene` is what `part` names, `nodes` are its.
   protocol::Result<void> add(const ScenePart& part, const scene::Scene& scene,
                              const NodeState& nodes, const protocol::MeasurementAdd& request);
-  protocol::Result<void> remove(const ScenePart& part, std::uint32_t id);
-  void clear(const ScenePart& part);
+  protocol::Result<void> remove(const ScenePart& part, std::uint32_t id) {
+    return marks_.remove(part, id);
+  }
+  void clear(const ScenePart& part) { marks_.clear(part); }
   void set_unit(protocol::LengthUnit unit);
 
   /// Values and places in a pose of the scene. What no longer fits a file that was changed is left
@@ -44,16 +45,12 @@ class MeasurementSet {
     std::vector<std::uint32_t> nodes;
     scene::Bounds bounds;  // of a size
   };
-  using Entries = std::vector<Entry>;
 
   protocol::Measurement describe(const Entry& entry, const scene::Scene& scene,
                                  const scene::Pose& pose) const;
-  void replace(Entries entries);
 
-  std::shared_ptr<const Entries> entries_ = std::make_shared<const Entries>();
+  Marks<Entry> marks_{{.article = "a", .name = "measurement", .most = protocol::max_measurements}};
   protocol::LengthUnit unit_ = protocol::LengthUnit::m;
-  std::uint32_t last_id_ = 0;
-  std::uint32_t changes_ = 0;
 };
 
 }  // namespace heliograph::session

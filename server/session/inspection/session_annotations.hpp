@@ -22,9 +22,6 @@ class SessionAnnotations {
   protocol::Result<protocol::AnnotationList> clear(const std::string& by);
 
  private:
-  /// Changes the annotations by `change(part)`, under the lock.
-  template <class Change>
-  protocol::Result<protocol::AnnotationList> change(const std::string& by, const Change& change);
   std::string name_of(const std::string& viewer) const;
 
   SessionCore& core_;

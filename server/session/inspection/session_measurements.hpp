@@ -22,10 +22,6 @@ class SessionMeasurements {
                                                        const std::string& by);
 
  private:
-  /// Changes the measurements by `change(part)`, under the lock.
-  template <class Change>
-  protocol::Result<protocol::MeasurementList> change(const std::string& by, const Change& change);
-
   SessionCore& core_;
 };
 

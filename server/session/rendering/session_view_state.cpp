@@ -92,8 +92,7 @@ void SessionView::adopt_pose() {
     renderer_->set_camera(state_.camera);
     return;
   }
-  scene::Pose pose = scene::rest_pose(*state_.scene);
-  scene::evaluate(*state_.scene, *clip, seconds, pose);
+  const scene::Pose pose = scene::pose_at(*state_.scene, clip, seconds);
   renderer_->set_camera(scene::camera_at(*state_.scene, state_.camera, pose));
 }
 

@@ -47,7 +47,8 @@ class MeasurementSetTest : public testing::Test {
     return set_.add(part_, *scene_, nodes_, request);
   }
   protocol::MeasurementList list(double seconds = 0.0) const {
-    return set_.list(part_, *scene_, pose_at(*scene_, seconds > 0.0 ? "slide" : "", seconds));
+    const scene::Clip* const clip = seconds > 0.0 ? scene::find_clip(*scene_, "slide") : nullptr;
+    return set_.list(part_, *scene_, scene::pose_at(*scene_, clip, seconds));
   }
   static MeasuredPoint place(float x, float y, float z) { return {.position = {{x, y, z}}}; }
   static MeasuredPoint corner(std::uint32_t triangle, protocol::Vec3 weights) {
