@@ -59,6 +59,15 @@ class BroadcastTest : public testing::Test {
     due_ += encodings;
     return broadcast_->pump();
   }
+  /// As soon as the rate of the viewer allows it.
+  bool pump_at_the_viewers_rate() {
+    bool begun = pump(1);
+    for (int i = 0; i < 5000 && !begun; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      begun = broadcast_->pump();
+    }
+    return begun;
+  }
 
   const Bytes encoded_{1, 2, 3};
   Bytes pixels_ = Bytes(16 * 16 * 4, 128);
@@ -111,12 +120,7 @@ TEST_F(BroadcastTest, SendsRefiningFramesAgainAfterSomeSeconds) {
   render(FramePurpose::refining, 65, 4'900'000);
   EXPECT_FALSE(broadcast_->pump());
   render(FramePurpose::refining, 66, 5'000'000);
-  bool begun = pump(1);
-  for (int i = 0; i < 5000 && !begun; ++i) {  // as soon as the rate of the viewer allows it
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    begun = broadcast_->pump();
-  }
-  ASSERT_TRUE(begun);
+  ASSERT_TRUE(pump_at_the_viewers_rate());
   const stream::SharedFrame frame = sent("a");
   ASSERT_TRUE(frame);
   EXPECT_EQ(frame->header.sample_count, 66u);
@@ -131,12 +135,7 @@ TEST_F(BroadcastTest, EncodesFinalFrameFromPixels) {
   // Not sent: its samples have not doubled. The final frame shows it.
   render(FramePurpose::refining, 5);
   broadcast_->send_final();
-  bool begun = pump(1);
-  for (int i = 0; i < 5000 && !begun; ++i) {  // as soon as the rate of the viewer allows it
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    begun = broadcast_->pump();
-  }
-  ASSERT_TRUE(begun);
+  ASSERT_TRUE(pump_at_the_viewers_rate());
   const stream::SharedFrame frame = sent("a");
   ASSERT_TRUE(frame);
   EXPECT_EQ(frame->header.sample_count, 5u);
