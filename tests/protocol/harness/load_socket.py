@@ -2,17 +2,18 @@
 
 import asyncio
 import base64
+import functools
 import json
 import os
 import struct
 import time
 from dataclasses import dataclass
 
+from harness.raw_socket import BINARY, CLOSE, PING, PONG, TEXT, frame
 from harness.viewer import SUBPROTOCOL
 
 _HEADER = struct.Struct("<12xI8xIHH4xHH")  # frame_seq, state_rev, size and full size
 _MOST_HEADER = 64  # bytes
-_TEXT, _BINARY, _CLOSE, _PING, _PONG = 1, 2, 8, 9, 10
 
 
 class Refused(Exception):
@@ -32,12 +33,8 @@ class FrameNote:
     bytes: int
 
 
-def masked(opcode, payload):
-    """One frame of a client. The mask is zero: it protects proxies, which are none on the way."""
-    size = len(payload)
-    if size < 126:
-        return struct.pack(">BB4x", 0x80 | opcode, 0x80 | size) + payload
-    return struct.pack(">BBH4x", 0x80 | opcode, 0x80 | 126, size) + payload
+# The mask protects proxies, which are none on the way; without it a frame costs no time.
+masked = functools.partial(frame, mask=bytes(4))
 
 
 class LoadSocket(asyncio.Protocol):
@@ -109,7 +106,7 @@ class LoadSocket(asyncio.Protocol):
         self.transport.abort()
 
     def _send(self, message):
-        self.transport.write(masked(_TEXT, json.dumps(message, separators=(",", ":")).encode()))
+        self.transport.write(masked(TEXT, json.dumps(message, separators=(",", ":")).encode()))
 
     # Called by the event loop.
 
@@ -155,11 +152,11 @@ class LoadSocket(asyncio.Protocol):
             if len(data) < begin:
                 return False
             size = int.from_bytes(data[2:begin], "big")
-        needed = min(size, _MOST_HEADER) if opcode == _BINARY else size
+        needed = min(size, _MOST_HEADER) if opcode == BINARY else size
         if len(data) < begin + needed:
             return False
         payload = bytes(data[begin:begin + needed])
-        if opcode == _BINARY:
+        if opcode == BINARY:
             self._header, self._bytes, self._left = payload, size, size - needed
             del data[:begin + needed]
             self._read = self._skip
@@ -191,15 +188,15 @@ class LoadSocket(asyncio.Protocol):
             waiting[1].set_result(now)
 
     def _acknowledge(self, number):
-        self.transport.write(masked(_TEXT, b'{"jsonrpc":"2.0","method":"stream.ack",'
+        self.transport.write(masked(TEXT, b'{"jsonrpc":"2.0","method":"stream.ack",'
                                            b'"params":{"frame_seq":%d}}' % number))
 
     def _take(self, opcode, payload):
-        if opcode == _PING:
-            self.transport.write(masked(_PONG, payload))
-        elif opcode == _CLOSE:
+        if opcode == PING:
+            self.transport.write(masked(PONG, payload))
+        elif opcode == CLOSE:
             self.close_code = int.from_bytes(payload[:2], "big") if payload else 1005
-            self.transport.write(masked(_CLOSE, payload[:2]))
+            self.transport.write(masked(CLOSE, payload[:2]))
             self.transport.close()
         elif payload.startswith(b'{"id":'):  # notifications do not matter here
             message = json.loads(payload)

@@ -7,8 +7,9 @@ import struct
 TEXT, BINARY, CLOSE, PING, PONG = 1, 2, 8, 9, 10
 
 
-def frame(opcode, payload=b"", *, fin=True, masked=True, reserved=0, length=None):
-    """One WebSocket frame; `length` overrides the announced length."""
+def frame(opcode, payload=b"", *, fin=True, masked=True, reserved=0, length=None,
+          mask=None):
+    """One WebSocket frame; `length` overrides the announced length, `mask` the random one."""
     size = len(payload) if length is None else length
     head = bytes([(0x80 if fin else 0) | reserved << 4 | opcode])
     mask_bit = 0x80 if masked else 0
@@ -20,7 +21,9 @@ def frame(opcode, payload=b"", *, fin=True, masked=True, reserved=0, length=None
         head += struct.pack(">BQ", mask_bit | 127, size)
     if not masked:
         return head + payload
-    mask = os.urandom(4)
+    mask = os.urandom(4) if mask is None else mask
+    if not any(mask):
+        return head + mask + payload
     return head + mask + bytes(byte ^ mask[i % 4] for i, byte in enumerate(payload))
 
 
