@@ -73,7 +73,6 @@ class Examples(ServerTestCase):
     @classmethod
     def tearDownClass(cls):
         super().tearDownClass()
-        cls.folder.cleanup()
         cls.jobs.cleanup()
 
     def in_order(self):

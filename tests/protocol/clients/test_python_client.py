@@ -259,11 +259,6 @@ class Examples(ServerTestCase):
         cls.server = Server("--scene", "hopping", "--token", TOKEN, scenes=scenes)
         cls.server.headers = {"Authorization": "Bearer " + TOKEN}
 
-    @classmethod
-    def tearDownClass(cls):
-        super().tearDownClass()
-        cls.folder.cleanup()
-
     def setUp(self):
         pass
 

@@ -24,11 +24,6 @@ class Annotations(ServerTestCase):
         model.save(os.path.join(cls.folder.name, "balls.glb"))
         cls.server = Server("--scene", "balls", scenes=cls.folder.name)
 
-    @classmethod
-    def tearDownClass(cls):
-        super().tearDownClass()
-        cls.folder.cleanup()
-
     def reset(self):
         super().reset()
         self.server.call("scene.load", {"name": "balls"})

@@ -182,11 +182,6 @@ class FromTheStart(Sessions, ServerTestCase):
                             "view.buffer=specular.denoised",
                             environment={"HELIOGRAPH_TEST_DEVICE_LOSS": cls.fault})
 
-    @classmethod
-    def tearDownClass(cls):
-        super().tearDownClass()
-        cls.folder.cleanup()
-
     def reset(self):
         pass  # what it was started with is what is tested
 

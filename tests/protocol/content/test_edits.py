@@ -29,11 +29,6 @@ class Edits(ServerTestCase):
         cls.server = Server("--scene", "mirror", "--set", "antialiasing.jitter=false",
                             scenes=cls.folder.name)
 
-    @classmethod
-    def tearDownClass(cls):
-        super().tearDownClass()
-        cls.folder.cleanup()
-
     def reset(self):
         super().reset()
         self.server.call("scene.load", {"name": "lit"})

@@ -39,11 +39,6 @@ class Measurements(ServerTestCase):
         values = memoryview(bytes(model.bytes[start:start + 12 * accessor["count"]])).cast("f")
         return [tuple(values[i:i + 3]) for i in range(0, len(values), 3)]
 
-    @classmethod
-    def tearDownClass(cls):
-        super().tearDownClass()
-        cls.folder.cleanup()
-
     def reset(self):
         super().reset()
         self.server.call("scene.load", {"name": "balls"})

@@ -26,11 +26,6 @@ class Nodes(ServerTestCase):
         cls.server = Server("--scene", "parts", "--set", "antialiasing.jitter=false",
                             "--set", "accumulation.max_samples=16", scenes=cls.folder.name)
 
-    @classmethod
-    def tearDownClass(cls):
-        super().tearDownClass()
-        cls.folder.cleanup()
-
     def reset(self):
         super().reset()
         self.server.call("scene.load", {"name": "parts"})

@@ -71,11 +71,6 @@ class Scenes(ServerTestCase):
         return {key: float(value) for key, value in
                 re.findall(r"^heliograph_scene_cache_(\w+) (\S+)$", text, re.MULTILINE)}
 
-    @classmethod
-    def tearDownClass(cls):
-        super().tearDownClass()
-        cls.folder.cleanup()
-
     def test_the_catalogue_lists_what_is_below_the_root(self):
         listed = self.server.call("scene.list")
         names = [scene["name"] for scene in listed["scenes"]]

@@ -21,7 +21,8 @@ START_TIMEOUT = 120 * TIME_FACTOR
 UNKNOWN_METHOD = -32601
 # Of the hybrid and of the path tracer: static views converge soon.
 FEW_SAMPLES = {"accumulation": {"max_samples": 4}, "reference": {"samples": 2}}
-CONVERGED_SAMPLES = 4 + 2
+CONVERGED_SAMPLES = (FEW_SAMPLES["accumulation"]["max_samples"] +
+                     FEW_SAMPLES["reference"]["samples"])
 
 
 class Server:
@@ -202,6 +203,7 @@ class ServerTestCase(unittest.IsolatedAsyncioTestCase):
     """Tests that share one server, which must survive each of them."""
 
     arguments = ()
+    folder = None  # a temporary one of the class
 
     @classmethod
     def setUpClass(cls):
@@ -211,6 +213,8 @@ class ServerTestCase(unittest.IsolatedAsyncioTestCase):
     def tearDownClass(cls):
         with cls.server:
             undeclared = cls.server.errors_seen - declared_errors()
+        if cls.folder:
+            cls.folder.cleanup()
         if undeclared:
             raise AssertionError(f"rpc.discover does not tell of {sorted(undeclared)}")
 

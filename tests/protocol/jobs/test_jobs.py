@@ -103,11 +103,6 @@ class Jobs(ServerTestCase):
         super().setUpClass()
         cls.client = Client(cls.server)
 
-    @classmethod
-    def tearDownClass(cls):
-        super().tearDownClass()
-        cls.folder.cleanup()
-
     def reset(self):
         """The sessions stay as they are."""
 
@@ -256,11 +251,6 @@ class RenderersBesideViewers(ServerTestCase):
         cls.folder = tempfile.TemporaryDirectory()
         cls.arguments = ("--jobs", cls.folder.name)
         super().setUpClass()
-
-    @classmethod
-    def tearDownClass(cls):
-        super().tearDownClass()
-        cls.folder.cleanup()
 
     def test_a_job_waits_while_an_image_moves(self):
         asyncio.run(self.move_beside_a_job())

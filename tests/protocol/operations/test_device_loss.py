@@ -24,11 +24,6 @@ class DeviceLoss(ServerTestCase):
         cls.server = Server(scenes=cls.scenes,
                             environment={"HELIOGRAPH_TEST_DEVICE_LOSS": cls.fault})
 
-    @classmethod
-    def tearDownClass(cls):
-        super().tearDownClass()
-        cls.folder.cleanup()
-
     def lose(self):
         with open(self.fault, "w", encoding="ascii"):
             pass

@@ -31,11 +31,6 @@ class TwoDevices(ServerTestCase):
         cls.server = Server(*cls.arguments,
                             environment={"HELIOGRAPH_TEST_DEVICE_LOSS": cls.fault})
 
-    @classmethod
-    def tearDownClass(cls):
-        super().tearDownClass()
-        cls.folder.cleanup()
-
     def own(self, name, **how):
         """A session on the second device, as soon as what a test before this one has rendered there
         does not count any more. It ends with the test."""

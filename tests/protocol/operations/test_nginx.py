@@ -111,7 +111,6 @@ class BehindNginx(ServerTestCase):
         cls.server.port = cls.direct
         cls.nginx.stop()
         super().tearDownClass()
-        cls.folder.cleanup()
 
     async def test_a_viewer_gets_frames(self):
         async with Viewer(self.server) as viewer:

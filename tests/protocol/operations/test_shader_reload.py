@@ -23,11 +23,6 @@ class ShaderReload(ServerTestCase):
         shutil.copytree(SOURCES, cls.shaders)
         cls.server = Server("--shader-dir", str(cls.shaders))
 
-    @classmethod
-    def tearDownClass(cls):
-        super().tearDownClass()
-        cls.folder.cleanup()
-
     def save(self, before, after):
         file = self.shaders / "post" / "present.comp"
         text = file.read_text()

@@ -39,11 +39,6 @@ class Tls(ServerTestCase):
         cls.server = Server("--tls-certificate", cls.certificate, "--tls-key", cls.key,
                             "--token", TOKEN, certificate=cls.certificate)
 
-    @classmethod
-    def tearDownClass(cls):
-        super().tearDownClass()
-        cls.folder.cleanup()
-
     def setUp(self):
         pass
 

@@ -40,11 +40,6 @@ class Uploads(ServerTestCase):
                          "--upload-quota", str(2 * len(cls.mirror) + 2000))
         super().setUpClass()
 
-    @classmethod
-    def tearDownClass(cls):
-        super().tearDownClass()
-        cls.folder.cleanup()
-
     def setUp(self):
         for kind in ("scenes", "environments"):
             for name in os.listdir(os.path.join(self.folder.name, kind)):

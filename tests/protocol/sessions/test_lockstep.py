@@ -35,11 +35,6 @@ class Lockstep(ServerTestCase):
         make_scenes(cls.folder.name)
         cls.server = Server("--scene", "hopping", scenes=cls.folder.name)
 
-    @classmethod
-    def tearDownClass(cls):
-        super().tearDownClass()
-        cls.folder.cleanup()
-
     def reset(self):
         self.server.call("frame.run")
         super().reset()
