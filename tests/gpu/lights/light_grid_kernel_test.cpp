@@ -101,6 +101,9 @@ class KernelComparison {
     protocol::Settings made;
     made.lighting.light_grid = by_grid;
     made.indirect.enabled = indirect;
+    // Many small cells, all of them updated in each frame: little noise in their mean.
+    made.indirect.cell_angle = 0.02f;
+    made.indirect.updates = 65536;
     return made;
   }
 
@@ -144,7 +147,8 @@ std::array<double, 2> gathered(bool by_grid) {
 }
 
 // Which place of a cell is updated depends on the order of the shaders' threads: the sums of runs
-// with the same numbers differ by half a percent. Those of the kernels are always the same.
+// with the same numbers have a standard deviation of 0.4 %, their ratios one of 0.55 %. Those of
+// the kernels are always the same.
 TEST_F(LightGridKernel, CellsOfTheRadianceCacheGatherTheLightOfAllLights) {
   const auto exact = gathered(false), by_grid = gathered(true);
   EXPECT_GT(exact[0], 0.004);
