@@ -100,6 +100,8 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
+bool is_option(const std::string& argument) { return argument.size() >= 2 && argument[0] == '-'; }
+
 /// "unknown option --widht; did you mean --width?" where that is what is wrong; otherwise empty.
 std::string unknown_argument(const CLI::App& app, const CLI::App* command) {
   const std::vector<std::string> remaining = app.remaining(true);
@@ -107,8 +109,10 @@ std::string unknown_argument(const CLI::App& app, const CLI::App* command) {
                           const std::vector<std::string>& known) {
     return what + " " + name + protocol::suggestion(name, {known.begin(), known.end()});
   };
+  // What stands first where a command belongs is one, whatever options follow.
+  const bool names_command = !command && !remaining.empty() && !is_option(remaining.front());
   for (const std::string& argument : remaining) {
-    if (argument.size() < 2 || argument[0] != '-') continue;
+    if (names_command || !is_option(argument)) continue;
     return unknown("unknown option", argument.substr(0, argument.find('=')),
                    option_names(app, command));
   }

@@ -136,6 +136,11 @@ void check_buffer(const render::Renderer& renderer, const std::string& name) {
   throw std::runtime_error("--buffer: frames of this scene with these settings have no " + name);
 }
 
+/// Whether its files show more of a frame than the output.
+bool reads_buffers(const RenderTask& task) {
+  return task.request.buffer != "output" || task.format == protocol::FileFormat::exr;
+}
+
 /// When an image is complete: converged, or good enough, or late.
 class ImageEnd {
  public:
@@ -206,7 +211,8 @@ void render_file(RenderContext& context, Renderers& renderers, const RenderTask&
   const auto output =
       open_output(file.path, {.format = task.format, .fps = task.request.fps, .alpha = alpha});
   for (const Shot& shot : file.shots) {
-    if (shot.cut) renderer.reset();
+    // As in a new renderer, with the images and passes of this one.
+    if (shot.cut) renderer.invalidate_history();
     accept(renderer.set_pose(task.request.clip, shot.seconds));
     renderer.set_camera(shot.camera);
     output->add(render_image(context, renderers, task, shot));
@@ -248,6 +254,7 @@ std::unique_ptr<scene::Scene> read_scene(const RenderContext& context, const Ren
 void prepare(RenderContext& context, const RenderTask& task, render::Renderer& renderer,
              const Shot& first) {
   const FrameSize size = frame_size(task.request);
+  renderer.keep_buffers(reads_buffers(task));
   renderer.set_scene(context.scene.resources);
   renderer.set_size(size.width, size.height);
   renderer.set_camera(first.camera);
