@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { seriousFindings } from "./harness/axe.mjs";
 import {
   distance,
+  doubleClick,
   dragView,
   eventually,
   firstFrame,
@@ -40,7 +41,7 @@ async function expectNothingChanges({ page }) {
   const { eye } = await staticCamera(page, stage.server);
   const { rev } = await stage.server.call("session.info");
   await dragView(page, { x: 100, y: 400 }, { x: 260, y: 420 });
-  await page.mouse.dblclick(200, 400);
+  await doubleClick(page, { x: 200, y: 400 });
   await page.locator("#view").focus();
   for (const key of ["f", "w", "ArrowLeft", " ", "Control+z"]) await page.keyboard.press(key);
   await openTab(page, "scene");

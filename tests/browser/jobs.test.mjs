@@ -1,13 +1,13 @@
 // Jobs in the web client: "Render this view" creates one, the page at /jobs shows what becomes of it.
 
 import assert from "node:assert/strict";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after } from "node:test";
 import { seriousFindings } from "./harness/axe.mjs";
 import { eventually, screenshot } from "./harness/browser.mjs";
-import { outputFolder } from "./harness/environment.mjs";
+import { downloaded } from "./harness/downloads.mjs";
 import { Stage } from "./harness/stage.mjs";
 
 const folder = mkdtempSync(join(tmpdir(), "heliograph-jobs-"));
@@ -62,13 +62,10 @@ stage.test("a view is rendered as a job, whose files the page of jobs shows", as
   const image = job.locator("img");
   await image.waitFor();
   await eventually(() => image.evaluate((node) => node.naturalWidth === 96), "the image is shown");
-  const download = jobs.waitForEvent("download");
-  await job.getByRole("link", { name: /^Download ZIP of/ }).click();
-  const file = await download;
-  assert.equal(file.suggestedFilename(), "shadow_objects__96_x_54.zip");
-  const path = join(outputFolder, "job.zip");
-  await file.saveAs(path);
-  const archive = readFileSync(path);
+  const { name, bytes: archive } = await downloaded(jobs, () =>
+    job.getByRole("link", { name: /^Download ZIP of/ }).click(),
+  );
+  assert.equal(name, "shadow_objects__96_x_54.zip");
   assert.equal(archive.readUInt32LE(0), 0x04034b50, "no ZIP archive");
   assert.ok(archive.includes("shadow_objects.webp"));
 });

@@ -3,6 +3,7 @@
 
 import assert from "node:assert/strict";
 import { eventually, openTab, screenshot } from "./harness/browser.mjs";
+import { downloaded } from "./harness/downloads.mjs";
 import { Stage } from "./harness/stage.mjs";
 
 let start; // the camera that the scene begins with
@@ -188,9 +189,10 @@ stage.test("an annotation is written, shared, and faint behind a surface", async
   await page.emulateMedia({ colorScheme: "light" });
   await screenshot(page, "annotation_light");
   await page.emulateMedia({ colorScheme: "dark" });
-  const saved = page.waitForEvent("download");
-  await page.getByRole("button", { name: "Save as JSON" }).click();
-  assert.equal((await saved).suggestedFilename(), "annotations.json");
+  const saved = await downloaded(page, () =>
+    page.getByRole("button", { name: "Save as JSON" }).click(),
+  );
+  assert.equal(saved.name, "annotations.json");
   await page.getByRole("button", { name: "Remove Dented here" }).click();
   await eventually(async () => (await listed()).length === 0, "it removed");
   await page.locator("#view").focus();

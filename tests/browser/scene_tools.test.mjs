@@ -1,7 +1,7 @@
 // Scene tools: lights, materials, picking, pixel values.
 
 import assert from "node:assert/strict";
-import { eventually, openTab, screenshot } from "./harness/browser.mjs";
+import { doubleClick, eventually, openTab, screenshot } from "./harness/browser.mjs";
 import { Stage } from "./harness/stage.mjs";
 
 const stage = new Stage({
@@ -107,7 +107,7 @@ stage.test("a click lists the value of every buffer at a pixel", async () => {
 stage.test("a double click focuses on the surface", async () => {
   const { page } = await stage.sharedViewer();
   const { position } = await stage.server.call("scene.pick", { x: 0.3, y: 600 / 900 });
-  await page.mouse.dblclick(300, 600);
+  await doubleClick(page, { x: 300, y: 600 });
   await eventually(
     async () => {
       const { target } = await stage.server.call("camera.get");

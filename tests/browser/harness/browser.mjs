@@ -2,7 +2,13 @@
 
 import { join } from "node:path";
 import { chromium, firefox } from "playwright-core";
-import { chromiumPath, firefoxPath, inFirefox, outputFolder } from "./environment.mjs";
+import {
+  chromiumPath,
+  downloadFolder,
+  firefoxPath,
+  inFirefox,
+  outputFolder,
+} from "./environment.mjs";
 import { observer } from "./observer.mjs";
 
 const launchOptions = {
@@ -22,9 +28,23 @@ const launchOptions = {
 /** A browser that test files use one after the other. */
 export const startBrowserServer = () => chromium.launchServer(launchOptions);
 
+/** Without a display it has no WebGL. */
+function launchFirefox() {
+  return firefox.launch({
+    channel: "moz-firefox",
+    executablePath: firefoxPath,
+    headless: !process.env.DISPLAY,
+    downloadsPath: downloadFolder,
+    firefoxUserPrefs: {
+      "webgl.force-enabled": true, // also by a software driver
+      "dom.events.testing.asyncClipboard": true, // its driver grants no permissions
+    },
+  });
+}
+
 /** The browser that HELIOGRAPH_TEST_BROWSER gives the address of, or a new one. */
 export function launchBrowser() {
-  if (inFirefox) return firefox.launch({ channel: "moz-firefox", executablePath: firefoxPath });
+  if (inFirefox) return launchFirefox();
   const address = process.env.HELIOGRAPH_TEST_BROWSER;
   return address ? chromium.connect(address) : chromium.launch(launchOptions);
 }
@@ -182,6 +202,16 @@ export async function dragView(page, from, to, steps = 12) {
     await page.waitForTimeout(16);
   }
   await page.mouse.up();
+}
+
+/** At a point of the window. Firefox's driver counts each click as a first one: the event follows. */
+export async function doubleClick(page, at) {
+  await page.mouse.dblclick(at.x, at.y);
+  if (!inFirefox) return;
+  await page.evaluate(({ x, y }) => {
+    const event = new MouseEvent("dblclick", { bubbles: true, clientX: x, clientY: y });
+    document.elementFromPoint(x, y).dispatchEvent(event);
+  }, at);
 }
 
 export function screenshot(page, name) {

@@ -16,3 +16,6 @@ export const sceneRoot = process.env.HELIOGRAPH_SCENE_ROOT;
 export const outputFolder =
   process.env.HELIOGRAPH_TEST_OUTPUT ?? join(tmpdir(), "heliograph-browser-tests");
 mkdirSync(outputFolder, { recursive: true });
+
+/** Where the Firefox of this process saves files. */
+export const downloadFolder = join(tmpdir(), `heliograph-downloads-${process.pid}`);
