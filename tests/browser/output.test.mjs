@@ -2,11 +2,9 @@
 
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
-import { readFileSync } from "node:fs";
-import { join } from "node:path";
 import { seriousFindings } from "./harness/axe.mjs";
 import { chooseOutput, eventually, screenshot, settle } from "./harness/browser.mjs";
-import { outputFolder } from "./harness/environment.mjs";
+import { downloaded, watchDownloads } from "./harness/downloads.mjs";
 import { difference, statistics, thumbnail } from "./harness/images.mjs";
 import { Stage } from "./harness/stage.mjs";
 
@@ -33,13 +31,11 @@ async function saved(page, options) {
   );
 }
 
-async function downloaded(page, action) {
-  const download = page.waitForEvent("download", { timeout: 130_000 });
-  await action();
-  const file = await download;
-  const path = join(outputFolder, file.suggestedFilename());
-  await file.saveAs(path);
-  return { name: file.suggestedFilename(), path, bytes: readFileSync(path) };
+/** By keys: Firefox sends no change of a value that its driver has filled in. */
+async function enter(field, text) {
+  await field.press("Control+a");
+  await field.pressSequentially(text);
+  await field.press("Tab");
 }
 
 /** The data window of an OpenEXR file: attributes follow the magic number and the version. */
@@ -77,8 +73,7 @@ stage.test("an image is saved at once as it is, and a converged one can be cance
   const toast = page.locator(".toast", { hasText: jpeg.name });
   assert.match(await toast.textContent(), /\d+ x \d+ pixels, \d+ samples?/);
 
-  const downloads = [];
-  page.on("download", (file) => downloads.push(file.suggestedFilename()));
+  const downloads = watchDownloads(page);
   const dialog = await openSave(page);
   await dialog.getByRole("button", { name: "Save", exact: true }).click();
   const status = dialog.getByRole("status");
@@ -92,7 +87,7 @@ stage.test("an image is saved at once as it is, and a converged one can be cance
   await dialog.waitFor({ state: "hidden" });
   await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 4 } } });
   await settle(page, stage.server);
-  assert.deepEqual(downloads, [], "a cancelled image was saved");
+  assert.deepEqual(downloads(), [], "a cancelled image was saved");
   const again = await openSave(page);
   assert.ok(await again.getByRole("button", { name: "Save", exact: true }).isEnabled());
   await page.keyboard.press("Escape");
@@ -108,14 +103,13 @@ stage.test("an image is saved in another size, with linked sides and progress", 
     dialog.getByRole("textbox", { name }),
   );
   assert.deepEqual([await width.inputValue(), await height.inputValue()], ["720", "405"]);
-  await width.fill("960");
-  await width.press("Tab");
+  await enter(width, "960");
   assert.equal(await height.inputValue(), "540");
   await dialog.getByRole("button", { name: "Keep the aspect ratio" }).click();
-  await height.fill("99999");
-  await height.press("Tab");
+  await enter(height, "99999");
   assert.equal(await height.inputValue(), "2160");
-  await height.fill("500");
+  await enter(height, "500");
+  await dialog.getByLabel("Samples").selectOption({ label: "Quick: 8 samples" });
   await screenshot(page, "save_size");
   assert.deepEqual(await seriousFindings(page), []);
   const save = dialog.getByRole("button", { name: "Save", exact: true });
@@ -131,12 +125,41 @@ stage.test("an image is saved in another size, with linked sides and progress", 
   // Cancelling ends the copy, too.
   await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 65536 } } });
   const again = await openSave(page);
-  await again.getByRole("textbox", { name: "Width" }).fill("1000");
+  await enter(again.getByRole("textbox", { name: "Width" }), "1000");
   await again.getByRole("button", { name: "Save", exact: true }).click();
   await eventually(async () => (await sessions()) === 2, "a copy");
   await again.getByRole("button", { name: "Cancel" }).click();
   await eventually(async () => (await sessions()) === 1, "the copy to end");
   await stage.server.call("settings.patch", { patch: { accumulation: { max_samples: 4 } } });
+});
+
+stage.test("a converged image waits for the path traced samples, in any size", async () => {
+  const { page } = await stage.sharedViewer();
+  const samples = (count) =>
+    stage.server.call("settings.patch", {
+      patch: { accumulation: { max_samples: 2 }, reference: { samples: count } },
+    });
+  await samples(65_536);
+  await page.waitForFunction(() => !window.seen.frame.final && window.seen.frame.samples > 2);
+  const dialog = await openSave(page);
+  const options = await dialog.getByLabel("Samples").locator("option").allTextContents();
+  assert.match(options[0], /^As it is now: \d+ path traced samples?$/);
+  assert.equal(options.at(-1), "Converged: 65536 path traced samples");
+  const save = dialog.getByRole("button", { name: "Save", exact: true });
+  const downloads = watchDownloads(page);
+  await save.click();
+  await dialog.getByText(/^Rendering: \d+ of 65536 path traced samples$/).waitFor();
+  await screenshot(page, "save_path_traced");
+  assert.deepEqual(downloads(), []);
+  await downloaded(page, () => samples(4));
+  const toast = (text) => page.locator(".toast", { hasText: text });
+  await toast(/: 720 x 405 pixels, \d+ path traced samples$/).waitFor();
+
+  await openSave(page);
+  await enter(dialog.getByRole("textbox", { name: "Width" }), "360");
+  await downloaded(page, () => save.click());
+  await toast(/: 360 x 20\d pixels, 4 path traced samples$/).waitFor();
+  await samples(2);
 });
 
 stage.test("an image is saved without its background", async () => {

@@ -1,7 +1,8 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { JsonObject } from "heliograph/json.ts";
+import type { JsonObject, JsonValue } from "heliograph/json.ts";
 import { RpcPeer } from "heliograph/rpc.ts";
+import { refinementOf, refinementText, shownSamples } from "../src/session/refinement.ts";
 import { UndoHistory } from "../src/session/undo_history.ts";
 import { SettingsStore } from "../src/session/settings_store.ts";
 
@@ -97,4 +98,37 @@ test("resetting a group touches only what was changed", async () => {
   store.resetGroup(group);
   const request = await answer({ result: { rev: 2, applied: { exposure: { auto: false } } } });
   assert.deepEqual(request.params.patch, { exposure: { auto: null } });
+});
+
+/** What a view that is refined reads of the settings. */
+function refined(use: string, indirect = true): { value(path: string): JsonValue | undefined } {
+  const values: JsonObject = {
+    "accumulation.max_samples": 64,
+    "reference.samples": 512,
+    "reference.use": use,
+    "indirect.enabled": indirect,
+  };
+  return { value: (path) => values[path] };
+}
+
+const text = (samples: number, use: string, indirect?: boolean): string =>
+  refinementText(refinementOf(samples, refined(use, indirect)));
+
+test("samples of the reference are counted from its first on", () => {
+  assert.equal(text(24, "automatic"), "24 of 64 samples");
+  assert.equal(text(64, "automatic"), "0 of 512 path traced samples");
+  assert.equal(text(76, "automatic"), "12 of 512 path traced samples");
+  assert.equal(text(76, "when_static", false), "12 of 512 path traced samples");
+});
+
+test("without the reference all are the hybrid's", () => {
+  assert.equal(text(64, "off"), "64 of 64 samples");
+  assert.equal(text(64, "automatic", false), "64 of 64 samples");
+  assert.equal(text(76, "off"), "76 of 76 samples"); // the limit was lowered
+});
+
+test("an image has the samples that it shows", () => {
+  assert.equal(shownSamples(1, refined("automatic")), "1 sample");
+  assert.equal(shownSamples(64, refined("automatic")), "64 samples");
+  assert.equal(shownSamples(65, refined("automatic")), "1 path traced sample");
 });

@@ -1,10 +1,16 @@
 // The dialog that saves the view as an image: format, samples, progress, cancelling.
 
 import { saveFile, captureBlob } from "../common/image_files.ts";
+import {
+  refinementOf,
+  refinementText,
+  referenceFollows,
+  shownSamples,
+} from "../session/refinement.ts";
 import { type Viewer, bufferSetting } from "../session/viewer.ts";
 import { button, element, setOptions, setText } from "../widgets/element.ts";
 import { field } from "../widgets/field.ts";
-import { captureInSize, captureWithoutBackground } from "./sized_capture.ts";
+import { type Wanted, captureInSize, captureWithoutBackground, leastSamples } from "./sized_capture.ts";
 import { type ImageSize, createSizeFields } from "./size_fields.ts";
 
 interface SaveHost {
@@ -28,8 +34,6 @@ interface RenderedImage {
   height: number;
   samples: number;
 }
-
-const maxSamples = "accumulation.max_samples";
 
 export function createSaveDialog(
   dialog: HTMLDialogElement,
@@ -82,30 +86,50 @@ export function createSaveDialog(
   /** The running capture in another size, and its samples so far. */
   let sized: AbortController | null = null;
   let sizedSamples = 0;
+  /** Called with the final frame of the view. */
+  let whenFinal: (() => void) | null = null;
   /** Whether an image without background is being rendered: it does not report its samples. */
   let withoutBackground = false;
 
-  const targetSamples = (): number => Number(viewer.settings.value(maxSamples) ?? 1);
   const viewSize = (): ImageSize => {
     const { width, height } = viewer.stream.settings.value ?? { width: 0, height: 0 };
     return { width, height };
   };
-  const shownSamples = (): number => viewer.frame.value?.samples ?? 1;
+  const hasViewSize = (): boolean => {
+    const [{ width, height }, view] = [size.value(), viewSize()];
+    return width === view.width && height === view.height;
+  };
+  const samplesNow = (): number => viewer.frame.value?.samples ?? 1;
   const shownBuffer = (): string => String(viewer.settings.value(bufferSetting) ?? "output");
   const showsOutput = (): boolean => shownBuffer() === "output";
 
+  /** Where the reference follows, what comes before it can be had much sooner. */
+  const sampleOptions = (): { value: string; label: string }[] => {
+    const now = samplesNow();
+    const final = viewer.frame.value?.final ?? false;
+    const follows = referenceFollows(viewer.settings) && !withoutReference();
+    const { pathTraced } = refinementOf(now, viewer.settings);
+    const { of } = refinementOf(0, viewer.settings);
+    const last = refinementOf(Infinity, viewer.settings).of;
+    const finished = follows ? `${last} path traced samples` : "when finished";
+    const before = follows && (!hasViewSize() || (!pathTraced && !final));
+    return [
+      { value: "now", label: `As it is now: ${shownSamples(now, viewer.settings)}` },
+      ...(before ? [{ value: "hybrid", label: `Quick: ${of} samples` }] : []),
+      { value: "converged", label: `Converged: ${final ? "now" : finished}` },
+    ];
+  };
+  /** Images without background are rendered without path traced samples. */
+  const withoutReference = (): boolean => transparent.checked && !background.hidden;
+
   const update = (): void => {
+    if (viewer.frame.value?.final) whenFinal?.();
     if (!dialog.open) return;
-    const shown = shownSamples();
-    const converged = viewer.frame.value?.final ?? false;
     if (!isSaving) {
       const possible = viewer.mayCreateSessions && format.value === "png" && showsOutput();
       transparent.disabled = !possible;
       background.hidden = !possible;
-      setOptions(samples, [
-        { value: "now", label: `As it is now: ${counted(shown)}` },
-        { value: "converged", label: converged ? "Converged: now" : "Converged: when finished" },
-      ]);
+      setOptions(samples, sampleOptions());
       return;
     }
     if (withoutBackground) {
@@ -113,12 +137,13 @@ export function createSaveDialog(
       setText(status, "Rendering without the background");
       return;
     }
-    const target = targetSamples();
-    const rendered = sized ? sizedSamples : Math.max(shown, viewer.stats.value?.samples ?? 0);
-    const share = converged && !sized ? 1 : Math.min(1, rendered / target);
+    const now = Math.max(samplesNow(), viewer.stats.value?.samples ?? 0);
+    const refinement = refinementOf(sized ? sizedSamples : now, viewer.settings);
+    const final = !sized && viewer.frame.value?.final;
+    const share = final ? 1 : Math.min(1, refinement.samples / refinement.of);
     bar.style.width = `${share * 100}%`;
     progress.setAttribute("aria-valuenow", String(Math.round(share * 100)));
-    setText(status, `Rendering: ${rendered} of ${Math.max(target, rendered)} samples`);
+    setText(status, `Rendering: ${refinementText(refinement)}`);
   };
   viewer.frame.watch(update);
   viewer.stats.watch(update);
@@ -135,15 +160,15 @@ export function createSaveDialog(
   };
 
   /** The view's own size is captured from its session, any other one from a copy. */
-  const render = async (chosen: Format, wanted: number | undefined): Promise<RenderedImage> => {
+  const render = async (chosen: Format, wanted: Wanted): Promise<RenderedImage> => {
     const { width, height } = size.value();
-    const view = viewSize();
-    if (!withoutBackground && width === view.width && height === view.height) {
-      const capture = await viewer.queries.capture(undefined, chosen, wanted);
+    if (!withoutBackground && hasViewSize()) {
+      if (wanted === "final") await finalFrame();
+      const capture = await viewer.queries.capture(undefined, chosen, leastSamples(wanted));
       return { ...capture, file: captureBlob(capture) };
     }
     const buffer = shownBuffer();
-    const request = { width, height, buffer, extension: extensionOf(chosen), samples: wanted };
+    const request = { width, height, buffer, extension: extensionOf(chosen), wanted };
     sized = new AbortController();
     sizedSamples = 0;
     update();
@@ -161,12 +186,24 @@ export function createSaveDialog(
     }
   };
 
+  /** Captures themselves do not wait for path traced samples. */
+  const finalFrame = (): Promise<void> =>
+    new Promise((resolve) => {
+      whenFinal = () => {
+        whenFinal = null;
+        resolve();
+      };
+      update();
+    });
+
   const run = async (): Promise<void> => {
     attempt += 1;
     const own = attempt;
     const chosen = format.value as Format;
-    const wanted = samples.value === "now" ? shownSamples() : undefined;
-    withoutBackground = transparent.checked && !background.hidden;
+    const follows = referenceFollows(viewer.settings) && !withoutReference();
+    const whole = follows && samples.value === "converged" ? "final" : "hybrid";
+    const wanted = samples.value === "now" ? samplesNow() : whole;
+    withoutBackground = withoutReference();
     setSaving(true);
     try {
       const image = await render(chosen, wanted);
@@ -175,7 +212,7 @@ export function createSaveDialog(
       const name = `${host.fileStem()}${suffix}.${extensionOf(chosen)}`;
       saveFile(image.file, name);
       const { width, height } = image;
-      host.inform(`Saved ${name}: ${width} x ${height} pixels, ${counted(image.samples)}`);
+      host.inform(`Saved ${name}: ${width} x ${height} pixels, ${shownSamples(image.samples, viewer.settings)}`);
       dialog.close();
     } catch (error) {
       if (own !== attempt) return;
@@ -185,6 +222,8 @@ export function createSaveDialog(
   };
 
   format.addEventListener("change", update);
+  transparent.addEventListener("change", update);
+  size.node.addEventListener("change", update);
   form.addEventListener("submit", (event) => {
     event.preventDefault();
     if (!isSaving) void run();
@@ -196,6 +235,7 @@ export function createSaveDialog(
   dialog.addEventListener("close", () => {
     attempt += 1;
     sized?.abort();
+    whenFinal = null;
     withoutBackground = false;
     setSaving(false);
   });
@@ -217,7 +257,3 @@ export function createSaveDialog(
 }
 
 const extensionOf = (format: Format): "png" | "jpg" | "exr" => (format === "jpeg" ? "jpg" : format);
-
-function counted(samples: number): string {
-  return samples === 1 ? "1 sample" : `${samples} samples`;
-}

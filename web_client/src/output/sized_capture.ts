@@ -17,9 +17,18 @@ interface SizedCapture {
   buffer: string;
   /** As in the address of a frame. */
   extension: "png" | "jpg" | "exr";
-  /** undefined: all that a static view accumulates. */
-  samples: number | undefined;
+  wanted: Wanted;
 }
+
+/**
+ * The samples of an image: so many; all of the hybrid; or those of a view that nothing refines any
+ * more, which are the path traced reference's where that follows.
+ */
+export type Wanted = number | "hybrid" | "final";
+
+/** As captures count: undefined is all of the hybrid, or what a finished view has. */
+export const leastSamples = (wanted: Wanted): number | undefined =>
+  typeof wanted === "number" ? wanted : undefined;
 
 interface SizedImage {
   file: Blob;
@@ -32,23 +41,24 @@ interface SizedImage {
  */
 export async function captureInSize(
   viewer: Viewer,
-  { width, height, buffer, extension, samples }: SizedCapture,
+  { width, height, buffer, extension, wanted }: SizedCapture,
   signal: AbortSignal,
   progress: (samples: number) => void,
 ): Promise<SizedImage> {
   const size = { width, height, idle_timeout: idleSeconds };
   const params = { copy_of: viewer.membership.name, ...size };
   const { name } = await viewer.rpc.request("session.create", params, createTimeoutMs);
-  const figures = watchSamples(viewer, name, progress);
+  const copy = watchSamples(viewer, name, progress);
   try {
     signal.throwIfAborted();
+    if (wanted === "final") await Promise.race([copy.final, aborted(signal)]);
     const url = viewer.connection.address.url(`api/v1/sessions/${name}/frame.${extension}`);
     url.searchParams.set("buffer", buffer);
-    return await download(url, samples, signal);
+    return await download(url, wanted, signal);
   } finally {
     // If this fails, the session ends by its idle timeout.
-    await figures.rpc.request("session.close", { session: name }).catch(() => {});
-    figures.dispose();
+    await copy.connection.rpc.request("session.close", { session: name }).catch(() => {});
+    copy.connection.dispose();
     viewer.rpc.notify("session.close", { session: name });
   }
 }
@@ -59,21 +69,22 @@ export async function captureInSize(
  */
 export async function captureWithoutBackground(
   viewer: Viewer,
-  { width, height, samples }: SizedCapture,
+  { width, height, wanted }: SizedCapture,
   signal: AbortSignal,
 ): Promise<SizedImage> {
   const session = viewer.membership.name;
   const url = viewer.connection.address.url(`api/v1/sessions/${session}/frame.png`);
   const parameters = { transparent: "1", width: String(width), height: String(height) };
   for (const [name, value] of Object.entries(parameters)) url.searchParams.set(name, value);
-  return download(url, samples, signal);
+  return download(url, wanted, signal);
 }
 
 async function download(
   url: URL,
-  samples: number | undefined,
+  wanted: Wanted,
   signal: AbortSignal,
 ): Promise<SizedImage> {
+  const samples = leastSamples(wanted);
   if (samples !== undefined) url.searchParams.set("samples", String(samples));
   const response = await fetch(url, { signal });
   if (!response.ok) throw new Error((await response.text()).trim());
@@ -81,12 +92,20 @@ async function download(
   return { file: await response.blob(), samples: rendered };
 }
 
+function aborted(signal: AbortSignal): Promise<never> {
+  return new Promise((_, reject) => {
+    signal.addEventListener("abort", () => reject(signal.reason));
+  });
+}
+
 /** A connection to the session for the figures of its frames, which are not shown. */
 function watchSamples(
   viewer: Viewer,
   session: string,
   progress: (samples: number) => void,
-): Connection {
+): { connection: Connection; final: Promise<void> } {
+  let finish = (): void => {};
+  const final = new Promise<void>((resolve) => (finish = resolve));
   const connection = new Connection(
     document.baseURI,
     null,
@@ -98,7 +117,10 @@ function watchSamples(
       notification: (method, params) => {
         if (method === "stats.frame") progress((params as FrameStats).samples);
       },
-      drawn: (frame) => progress(frame.samples),
+      drawn: (frame) => {
+        progress(frame.samples);
+        if (frame.final) finish();
+      },
       draw: (image) => image.close(),
       warning: () => {},
       decodeFailed: () => {},
@@ -106,5 +128,5 @@ function watchSamples(
     new SessionAddress(document.baseURI, viewer.connection.address.route, session),
   );
   connection.open();
-  return connection;
+  return { connection, final };
 }
