@@ -3,6 +3,7 @@
 import assert from "node:assert/strict";
 import {
   distance,
+  doubleClick,
   dragView,
   eventually,
   firstFrame,
@@ -13,6 +14,7 @@ import {
   settle,
   unfoldAll,
 } from "./harness/browser.mjs";
+import { inFirefox } from "./harness/environment.mjs";
 import { difference, statistics, thumbnail } from "./harness/images.mjs";
 import { Stage } from "./harness/stage.mjs";
 
@@ -69,7 +71,7 @@ stage.test("a phone that joins leaves the desktop's image as it is", async () =>
   const shownPart = (390 / 700) * (540 / 960); // of the frame's width
   const at = { x: 0.5 + (80 / 390 - 0.5) * shownPart, y: 0.5 };
   const { position } = await stage.server.call("scene.pick", at);
-  await phone.page.locator("#view").dblclick({ position: { x: 80, y: 350 } });
+  await doubleClick(phone.page, { x: 80, y: 350 });
   await eventually(async () => {
     const { target } = await stage.server.call("camera.get");
     return distance(target, position) < 0.2;
@@ -80,6 +82,18 @@ stage.test("a phone that joins leaves the desktop's image as it is", async () =>
     const { width, height } = await stage.server.call("session.info");
     return height > 1.5 * width;
   }, "a size that suits the phone alone");
+});
+
+stage.test("a page that joins others leaves the camera that the server has fitted", async () => {
+  const desktop = await stage.watch();
+  await desktop.page.keyboard.press("h"); // a fit beside the panel would be the page's own
+  await stage.server.call("camera.fit");
+  await settle(desktop.page, stage.server);
+  const { eye } = await stage.server.call("camera.get");
+  const phone = await stage.watch({ viewport: { width: 390, height: 700 } });
+  await settle(phone.page, stage.server);
+  await phone.page.waitForFunction(() => window.seen.answered["bookmarks.list"] > 0);
+  assert.deepEqual((await stage.server.call("camera.get")).eye, eye);
 });
 
 /** A swipe with one finger, as touch events. */
@@ -141,7 +155,11 @@ stage.test("on a desktop at 200 % zoom the view is above the panel", async () =>
   await screenshot(page, "zoomed");
 });
 
-stage.test("on a phone the panel is a sheet and one finger orbits", async () => {
+stage.test("on a phone the panel is a sheet and one finger orbits", async (t) => {
+  if (inFirefox) {
+    t.skip("its driver sends no touch events");
+    return;
+  }
   const { page } = await stage.watch({
     viewport: { width: 360, height: 740 },
     deviceScaleFactor: 2,

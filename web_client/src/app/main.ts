@@ -78,7 +78,7 @@ function main(): void {
   mountMarks(find("marks"), viewer, points);
   const navigation = new Navigation(canvas, {
     camera: () => (viewer.hello && viewer.membership.mayMove ? viewer.camera.value : null),
-    sceneSize: () => viewer.sceneSize(),
+    sceneSize: () => viewer.shown.size,
     moved: (camera, recorded, movement) =>
       viewer.cameraMoves.moveTo(camera, recorded, movement),
     fit: () => fit(),

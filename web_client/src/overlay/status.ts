@@ -141,7 +141,7 @@ function liveNotice(viewer: Viewer): Notice | null {
           detail: viewer.hello?.limits.max_upload_bytes
             ? "Drop a .glb file here, or choose one with Upload in the panel."
             : "Put .glb or .gltf files into the scene folder of the server.",
-          action: { label: "Refresh", run: () => void viewer.refreshScenes() },
+          action: { label: "Refresh", run: () => void viewer.shown.readList() },
           dims: false,
         };
   }

@@ -22,7 +22,7 @@ export function mountTransport(viewer: Viewer, root: HTMLElement): void {
     ...params: RequestArguments<Methods[Name]["params"]>
   ): Promise<void> => {
     try {
-      viewer.onAnimationState(await viewer.rpc.request(method, ...params));
+      viewer.shown.takeAnimation(await viewer.rpc.request(method, ...params));
     } catch (error) {
       viewer.report(error);
     }

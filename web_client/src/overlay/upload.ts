@@ -53,7 +53,7 @@ export async function uploadFile(viewer: Viewer, file: File, toasts: Toasts): Pr
     if (kind === "environment") {
       await viewer.parts.showUploadedEnvironment(name);
     } else {
-      await viewer.refreshScenes();
+      await viewer.shown.readList();
       await viewer.loading.load(name);
     }
   } catch (error) {

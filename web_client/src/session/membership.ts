@@ -46,6 +46,11 @@ export class Membership {
     return this.mayChange || everyone;
   }
 
+  /** Whether this page is the session's only viewer. */
+  get isAlone(): boolean {
+    return (this.session.value?.viewers.length ?? 1) <= 1;
+  }
+
   /** Whether the camera is this page's own. */
   get looksAround(): boolean {
     return this.controlState.value.kind === "looks_around";

@@ -1,12 +1,6 @@
 // What the server's notifications change on the page.
 
-import type {
-  AnimationState,
-  FrameStats,
-  Notifications,
-  SceneInfo,
-  SessionInfo,
-} from "heliograph/messages.ts";
+import type { FrameStats, Notifications, SessionInfo } from "heliograph/messages.ts";
 import type { CameraPose } from "../common/camera_pose.ts";
 import type { Signal } from "../common/signal.ts";
 import type { Bookmarks } from "./bookmarks.ts";
@@ -15,6 +9,7 @@ import type { NodeStore } from "./node_store.ts";
 import type { SceneLoading } from "./scene_loading.ts";
 import type { SceneParts } from "./scene_parts.ts";
 import type { SettingsStore } from "./settings_store.ts";
+import type { ShownScene } from "./shown_scene.ts";
 import type { UndoHistory } from "./undo_history.ts";
 import type { ViewRestore } from "./view_restore.ts";
 
@@ -22,6 +17,7 @@ interface Targets {
   settings: SettingsStore;
   parts: SceneParts;
   nodes: NodeStore;
+  shown: ShownScene;
   loading: SceneLoading;
   history: UndoHistory;
   bookmarks: Bookmarks;
@@ -29,8 +25,6 @@ interface Targets {
   stats: Signal<FrameStats | null>;
   viewRestore: ViewRestore;
   takeCamera(camera: CameraPose): void;
-  onAnimationState(animation: AnimationState): void;
-  sceneChanged(scene: SceneInfo): Promise<void>;
   setSession(session: SessionInfo): void;
 }
 
@@ -45,11 +39,11 @@ export function receiveNotification(targets: Targets, method: string, params: un
     case "animation.changed":
       // The state that is being restored has a clip of its own.
       if (targets.viewRestore.pending) break;
-      targets.onAnimationState((params as Notifications["animation.changed"]).animation);
+      targets.shown.takeAnimation((params as Notifications["animation.changed"]).animation);
       break;
     case "scene.changed":
       targets.history.dropScene();
-      void targets.sceneChanged((params as Notifications["scene.changed"]).scene);
+      void targets.shown.change((params as Notifications["scene.changed"]).scene);
       break;
     case "bookmarks.changed":
       targets.bookmarks.take((params as Notifications["bookmarks.changed"]).list);

@@ -2,19 +2,10 @@
 // that the frames are drawn to.
 
 import { Codec } from "heliograph/frame_header.ts";
-import {
-  type AnimationState,
-  type FrameStats,
-  type Hello,
-  type SceneInfo,
-  type SceneList,
-  type SessionInfo,
-  ErrorCode,
-} from "heliograph/messages.ts";
+import type { FrameStats, Hello, SceneInfo, SessionInfo } from "heliograph/messages.ts";
 import { ChannelClosed, RpcError, type RpcPeer } from "heliograph/rpc.ts";
 import type { CameraPose } from "../common/camera_pose.ts";
 import { Signal } from "../common/signal.ts";
-import { length, subtract } from "../common/vector.ts";
 import { CanvasPainter } from "../stream/canvas_painter.ts";
 import { Connection } from "../stream/connection.ts";
 import { FrameMeters } from "../stream/frame_meters.ts";
@@ -34,10 +25,11 @@ import { SceneParts } from "./scene_parts.ts";
 import { ServerCapabilities } from "./server_capabilities.ts";
 import { SessionRestore } from "./session_restore.ts";
 import { SettingsStore } from "./settings_store.ts";
+import { ShownScene } from "./shown_scene.ts";
 import { StreamRequests } from "./stream_requests.ts";
 import { UndoHistory } from "./undo_history.ts";
 import { ViewRestore } from "./view_restore.ts";
-import { type ViewState, changesOf, clipState } from "./view_state.ts";
+import { type ViewState, changesOf } from "./view_state.ts";
 
 const statsIntervalMs = 250;
 
@@ -59,11 +51,20 @@ export class Viewer {
   readonly loading: SceneLoading;
   readonly cameraMoves: CameraMoves;
   readonly membership: Membership;
-  readonly scenes = new Signal<SceneList>({ scenes: [], current: null });
-  readonly scene = new Signal<SceneInfo | null>(null);
   readonly restoring: Signal<boolean>;
-  readonly camera = new Signal<CameraPose | null>(null);
-  readonly animation = new Signal<AnimationState | null>(null);
+  readonly shown = new ShownScene({
+    rpc: () => this.rpc,
+    awaitFrame: (rev) => this.awaitFirstFrame(rev),
+    fit: () => this.cameraMoves.fit(undefined, false),
+    mayMove: () => this.membership.mayMove,
+    isRestoring: () => this.viewRestore.pending !== null,
+    attempt: (action) => this.attempt(action),
+    changedAt: (rev) => this.capabilities.changedAt(rev),
+  });
+  readonly scenes = this.shown.list;
+  readonly scene = this.shown.scene;
+  readonly camera = this.shown.camera;
+  readonly animation = this.shown.animation;
   /** What another viewer has changed last. */
   readonly activity = new Signal<Activity | null>(null);
   readonly stats = new Signal<FrameStats | null>(null);
@@ -81,8 +82,6 @@ export class Viewer {
   togglePlay: () => void = () => {};
   /** Stores the current view as a bookmark. */
   addBookmark: () => void = () => {};
-  private animationReadAt = 0;
-  private animationRev = 0;
   /** From the arrival of the server's hello until the connection is lost. */
   private receivedHello: Hello | null = null;
   readonly viewRestore: ViewRestore;
@@ -227,7 +226,6 @@ export class Viewer {
       // The first frames of a new connection may have another size or view.
       this.connection.hold();
     });
-    this.animation.watch(() => (this.animationReadAt = Date.now()));
     this.settings.rev.watch((rev) => {
       if (rev > 0) void this.attempt(() => this.capabilities.changedAt(rev));
     });
@@ -246,13 +244,6 @@ export class Viewer {
     return this.receivedHello?.role === "control" && this.capabilities.has("session.create");
   }
 
-  /** Largest extent of the scene in metres; 1 while it is unknown. */
-  sceneSize(): number {
-    const bounds = this.scene.value?.bounds;
-    const size = bounds ? length(subtract(bounds.max, bounds.min)) : 0;
-    return size > 0 && Number.isFinite(size) ? size : 1;
-  }
-
   /** What the page shows, complete enough to restore it in another session. */
   viewState(): ViewState {
     const scene = this.scene.value;
@@ -264,16 +255,9 @@ export class Viewer {
       ...this.parts.edits(),
       nodes: this.nodes.shown(),
       settings: changesOf(this.settings.schema.value, this.settings.tree.value),
-      clip: clipState(this.animation.value, this.animationReadAt),
+      clip: this.shown.clip(),
       camera: this.camera.value ?? undefined,
     };
-  }
-
-  /** Takes the state of the animation, unless a newer one came before. */
-  onAnimationState(animation: AnimationState): void {
-    if (animation.rev < this.animationRev) return;
-    this.animationRev = animation.rev;
-    this.animation.set(animation);
   }
 
   private changeSession(): void {
@@ -294,12 +278,6 @@ export class Viewer {
     if (label) this.onInfo(`Done again: ${label}`, "history");
   }
 
-  async refreshScenes(): Promise<void> {
-    await this.attempt(async () => {
-      this.scenes.set(await this.rpc.request("scene.list"));
-    });
-  }
-
   report(error: unknown): void {
     if (error instanceof ChannelClosed) return;
     this.onError(error instanceof RpcError ? error.sentence : (error as Error).message);
@@ -309,7 +287,7 @@ export class Viewer {
     this.receivedHello = hello;
     this.meters.reset();
     this.cameraMoves.reset();
-    this.animationRev = 0;
+    this.shown.restart();
     await this.membership.read();
     // The server refuses to close it while other viewers are in it.
     const abandoned = this.own.takeAbandoned();
@@ -320,7 +298,7 @@ export class Viewer {
     await Promise.all([
       this.stream.begin(hello, restore.pending !== null),
       this.settings.load(),
-      this.refreshScenes(),
+      this.shown.readList(),
       this.attempt(() => this.capabilities.readBuffers()),
       this.attempt(() => this.capabilities.read()),
       this.attempt(() => this.rpc.request("stats.subscribe", { interval_ms: statsIntervalMs })),
@@ -329,8 +307,8 @@ export class Viewer {
       void this.attempt(() => restore.restore());
     } else {
       this.connection.release({ oldestRev: 0, size: this.stream.requestedSize });
-      await this.readScene();
-      await this.fitFirstView();
+      await this.shown.read();
+      if (this.membership.isAlone) await this.shown.fitFirstView();
       void this.bookmarks.read();
       this.marks.read();
       this.sessionRestore.arrived(hello);
@@ -340,27 +318,10 @@ export class Viewer {
   /** A whole view state is in effect. */
   private async viewArrived(hello: Hello): Promise<void> {
     this.sessionRestore.arrived(hello);
-    await Promise.all([this.settings.load(), this.refreshScenes(), this.readScene()]);
+    await Promise.all([this.settings.load(), this.shown.readList(), this.shown.read()]);
     if (this.mayChange) void this.bookmarks.restore().then(() => this.marks.restore());
     this.connection.release({ oldestRev: this.camera.value?.rev ?? 0 });
     await this.stream.resume();
-  }
-
-  /** Reads scene, camera and animation; there may be no scene yet. */
-  private async readScene(): Promise<void> {
-    try {
-      const info = await this.rpc.request("scene.info");
-      const camera = await this.rpc.request("camera.get");
-      this.scene.set(info);
-      this.camera.set(camera);
-      this.awaitFirstFrame(camera.rev);
-      this.onAnimationState(await this.rpc.request("animation.list"));
-    } catch (error) {
-      const noScene =
-        error instanceof RpcError &&
-        (error.code === ErrorCode.notReady || error.code === ErrorCode.notFound);
-      if (!noScene) throw error;
-    }
   }
 
   setSession(session: SessionInfo): void {
@@ -370,38 +331,20 @@ export class Viewer {
   /** The session that the page is in now has another camera, and counts its own revisions. */
   private async sessionMoved(): Promise<void> {
     this.connection.predict(null);
-    this.animationRev = 0;
+    this.shown.restart();
     this.loading.reset();
     this.capabilities.reset();
     this.stream.sessionChanged();
-    await this.readScene();
+    await this.shown.read();
     await this.capabilities.changedAt(this.camera.value?.rev ?? 0);
     void this.bookmarks.read();
     this.marks.read();
   }
 
-  async sceneChanged(info: SceneInfo): Promise<void> {
-    // During a restore this may be an intermediate scene.
-    if (this.viewRestore.pending) return;
-    this.scene.set(info);
-    this.scenes.set({ ...this.scenes.value, current: info.name });
-    await this.attempt(() => this.readScene());
-    const rev = this.camera.value?.rev ?? 0;
-    await this.attempt(() => this.capabilities.changedAt(rev));
-  }
-
   /** A scene that this page has loaded. */
   private async ownSceneArrived(info: SceneInfo): Promise<void> {
-    await this.sceneChanged(info);
-    await this.fitFirstView();
-  }
-
-  /** What the server has fitted into an earlier frame is fitted into what this page shows of it. */
-  private async fitFirstView(): Promise<void> {
-    const { pending } = this.viewRestore;
-    if (!this.membership.mayMove || pending || this.animation.value?.lockstep) return;
-    const camera = await this.rpc.request("camera.get").catch(() => null);
-    if (camera?.fitted) await this.cameraMoves.fit(undefined, false);
+    await this.shown.change(info);
+    await this.shown.fitFirstView();
   }
 
   private frameDrawn(frame: DrawnFrame): void {

@@ -1,7 +1,7 @@
 // Draft, balanced or best: the first control of the panel.
 
 import type { Viewer } from "../../session/viewer.ts";
-import { currentQuality, qualityLevels } from "../../session/quality.ts";
+import { currentQuality, qualityLevels } from "./quality.ts";
 import { element } from "../../widgets/element.ts";
 
 export function createQualityField(viewer: Viewer): HTMLElement {

@@ -15,7 +15,7 @@ export function createScenePicker(viewer: Viewer, upload: (file: File) => void):
     gallery.hidden = !gallery.hidden;
     toggle.setAttribute("aria-expanded", String(!gallery.hidden));
     if (gallery.hidden) previews.stop();
-    else void viewer.refreshScenes().then(() => previews.start());
+    else void viewer.shown.readList().then(() => previews.start());
   });
   toggle.setAttribute("aria-expanded", "false");
   toggle.setAttribute("aria-controls", gallery.id);
@@ -32,7 +32,7 @@ function sceneList(viewer: Viewer): HTMLSelectElement {
   const select = element("select", {
     name: "scene",
     change: () => void viewer.loading.load(select.value),
-    focus: () => void viewer.refreshScenes(),
+    focus: () => void viewer.shown.readList(),
   });
   const update = (): void => {
     const { scenes, current } = viewer.scenes.value;

@@ -1,7 +1,7 @@
 // Three choices of quality, from the first look to the last image: groups of settings.
 
 import type { JsonObject } from "heliograph/json.ts";
-import type { SettingsStore } from "./settings_store.ts";
+import type { SettingsStore } from "../../session/settings_store.ts";
 
 interface QualityLevel {
   name: string;
