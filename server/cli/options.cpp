@@ -100,7 +100,9 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-bool is_option(const std::string& argument) { return argument.size() >= 2 && argument[0] == '-'; }
+bool is_option(const std::string& argument) {
+  return argument.size() >= 2 && argument[0] == '-';
+}
 
 /// "unknown option --widht; did you mean --width?" where that is what is wrong; otherwise empty.
 std::string unknown_argument(const CLI::App& app, const CLI::App* command) {

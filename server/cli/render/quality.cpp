@@ -36,6 +36,7 @@ std::optional<double> QualityEstimate::add(std::span<const std::uint8_t> rgba, s
   std::optional<double> similarity;
   if (before_samples_ > 0 && samples == 2 * before_samples_) {
     similarity = expected_similarity(luma, before_, width);
+    half_ = expected_similarity(luma, before_, width, 2.0);
   }
   before_ = std::move(luma);
   before_samples_ = samples;
@@ -43,8 +44,19 @@ std::optional<double> QualityEstimate::add(std::span<const std::uint8_t> rgba, s
   return similarity;
 }
 
+std::optional<std::uint32_t> SampleForecast::next() {
+  if (left_ == 0) return std::nullopt;
+  --left_;
+  return samples_;
+}
+
+void SampleForecast::add(std::uint32_t samples, bool half_suffices) {
+  samples_ = samples / 2;
+  left_ = half_suffices ? frames : 0;
+}
+
 double expected_similarity(std::span<const float> image, std::span<const float> other,
-                           std::uint32_t width) {
+                           std::uint32_t width, double noise_scale) {
   const std::size_t height = image.size() / width;
   const std::size_t wide = std::min<std::size_t>(window, width);
   const std::size_t high = std::min(window, height);
@@ -66,7 +78,7 @@ double expected_similarity(std::span<const float> image, std::span<const float> 
       const double mean = sums.value / count;
       const double noise = sums.difference / count;
       const double own = std::max(0.0, sums.square / count - mean * mean - noise);
-      sum += (2.0 * own + c2) / (2.0 * own + noise + c2);
+      sum += (2.0 * own + c2) / (2.0 * own + noise_scale * noise + c2);
       ++windows;
     }
   }

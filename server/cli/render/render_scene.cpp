@@ -26,6 +26,15 @@
 #include "session/rendering/transparency.hpp"
 
 namespace heliograph::cli {
+
+/// What renders the images of an entry.
+struct Renderers {
+  explicit Renderers(render::Engine& engine) : images(engine) {}
+
+  render::Renderer images;
+  std::optional<CoverageRenderer> coverage;  // where the background is put in
+};
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -144,20 +153,31 @@ bool reads_buffers(const RenderTask& task) {
 /// When an image is complete: converged, or good enough, or late.
 class ImageEnd {
  public:
-  explicit ImageEnd(const protocol::RenderRequest& request) : request_(request) {}
+  /// `forecast`: of the video's frames, null for another image.
+  ImageEnd(const protocol::RenderRequest& request, SampleForecast* forecast)
+      : request_(request), forecast_(forecast) {
+    if (forecast) enough_ = forecast->next();
+  }
 
   bool reached(const render::Frame& frame) {
     if (frame.converged || frame.samples >= request_.samples.value_or(most_samples)) return true;
     if (!request_.samples && session::is_complete_at_once(request_.buffer)) return true;
     if (request_.time_limit && seconds() >= *request_.time_limit) return true;
-    if (!request_.quality || !estimate_.wants(frame.samples)) return false;
-    const auto similarity = estimate_.add(frame.rgba, frame.width, frame.samples);
-    return similarity && *similarity >= *request_.quality;
+    if (!request_.quality) return false;
+    if (enough_) return frame.samples >= *enough_;
+    return estimate_.wants(frame.samples) && suffices(frame);
   }
 
  private:
   using Clock = std::chrono::steady_clock;
   static constexpr std::uint32_t most_samples = protocol::max_samples_per_pixel;
+
+  bool suffices(const render::Frame& frame) {
+    const auto similarity = estimate_.add(frame.rgba, frame.width, frame.samples);
+    if (!similarity || *similarity < *request_.quality) return false;
+    if (forecast_) forecast_->add(frame.samples, estimate_.half() >= *request_.quality);
+    return true;
+  }
 
   /// Since the beginning, without those that the process was stopped for.
   double seconds() const {
@@ -167,26 +187,21 @@ class ImageEnd {
   }
 
   const protocol::RenderRequest& request_;
+  SampleForecast* const forecast_;
+  std::optional<std::uint32_t> enough_;  // samples
   const Clock::time_point begin_ = Clock::now();
   const std::chrono::nanoseconds stopped_before_ = stopped_time();
   QualityEstimate estimate_;
 };
 
-/// What renders the images of an entry.
-struct Renderers {
-  explicit Renderers(render::Engine& engine) : images(engine) {}
-
-  render::Renderer images;
-  std::optional<CoverageRenderer> coverage;  // where the background is put in
-};
-
 session::CaptureContent render_image(RenderContext& context, Renderers& renderers,
-                                     const RenderTask& task, const Shot& shot) {
+                                     const RenderTask& task, const Shot& shot,
+                                     SampleForecast* forecast) {
   render::Renderer& renderer = renderers.images;
   const auto canceled = [&] { return context.canceled.load(); };
   std::uint32_t samples = 0;
   bool complete = false;
-  ImageEnd end(task.request);
+  ImageEnd end(task.request, forecast);
   while (!complete) {
     const std::optional<render::Frame> frame = renderer.render(canceled);
     if (!frame || canceled()) throw RenderCanceled();
@@ -210,12 +225,14 @@ void render_file(RenderContext& context, Renderers& renderers, const RenderTask&
       task.background.is_transparent() ? stream::Alpha::kept : stream::Alpha::ignored;
   const auto output =
       open_output(file.path, {.format = task.format, .fps = task.request.fps, .alpha = alpha});
+  SampleForecast forecast;
   for (const Shot& shot : file.shots) {
     // As in a new renderer, with the images and passes of this one.
     if (shot.cut) renderer.invalidate_history();
     accept(renderer.set_pose(task.request.clip, shot.seconds));
     renderer.set_camera(shot.camera);
-    output->add(render_image(context, renderers, task, shot));
+    output->add(render_image(context, renderers, task, shot,
+                             holds_frames(task.format) ? &forecast : nullptr));
   }
   output->finish();
   context.report.file(file.path);
@@ -235,7 +252,6 @@ void print_timings(RenderContext& context, const RenderTask& task, render::Rende
 
 /// The scene on the device, and the scene itself if it had to be read.
 void load(RenderContext& context, const RenderTask& task, std::unique_ptr<scene::Scene> scene) {
-  context.scene = {};
   auto environment = environment_of(context, task);
   set_up_device(context);
   context.scene = {.file = task.request.scene,
@@ -269,6 +285,37 @@ void prepare(RenderContext& context, const RenderTask& task, render::Renderer& r
   renderer.set_frame_seconds(static_cast<float>(1.0 / task.request.fps));
 }
 
+/// The request without what each of its views has of its own.
+protocol::RenderRequest without_views(protocol::RenderRequest request) {
+  request.output.clear();
+  request.camera.clear();
+  request.view.reset();
+  request.orbit.reset();
+  request.fit = false;
+  request.margin.reset();
+  request.turntable.reset();
+  return request;
+}
+
+/// Those of the entry before, whose images and passes are made, where they fit.
+std::shared_ptr<Renderers> take_renderers(RenderContext& context, const RenderTask& task,
+                                          const Shot& first) {
+  SceneInUse& scene = context.scene;
+  protocol::RenderRequest request = without_views(task.request);
+  std::shared_ptr<Renderers> renderers = std::exchange(scene.renderers, nullptr);
+  const bool fit = renderers && scene.format == task.format && scene.rendered == request;
+  if (fit && !context.options.timings) return renderers;
+  renderers.reset();  // before the next one takes memory
+  renderers = std::make_shared<Renderers>(*context.engine);
+  prepare(context, task, renderers->images, first);
+  if (!task.background.is_rendered()) {
+    renderers->coverage.emplace(*context.engine, scene.resources, task);
+  }
+  scene.rendered = std::move(request);
+  scene.format = task.format;
+  return renderers;
+}
+
 }  // namespace
 
 std::size_t expected_images(const RenderTask& task) {
@@ -278,7 +325,10 @@ std::size_t expected_images(const RenderTask& task) {
 void render_task(RenderContext& context, const RenderTask& task) {
   const protocol::RenderRequest& request = task.request;
   std::unique_ptr<scene::Scene> read;
-  if (!shows(context.scene, request)) read = read_scene(context, task);
+  if (!shows(context.scene, request)) {
+    context.scene = {};
+    read = read_scene(context, task);
+  }
   const scene::Scene& scene = read ? *read : *render::scene_of(*context.scene.resources);
   const std::vector<Shot> shots = plan_shots(scene, request);
   const std::vector<PlannedFile> files = plan_files(context, task, shots);
@@ -287,22 +337,17 @@ void render_task(RenderContext& context, const RenderTask& task) {
   }
   const std::set<fs::path> kept = existing_files(context.options, files);
   context.report.begin(task.number, request.scene, shots.size(), expected_images(task));
-  std::optional<Renderers> renderers;
+  std::shared_ptr<Renderers> renderers;  // dropped where rendering fails
   for (const PlannedFile& file : files) {
     if (kept.contains(file.path)) {
       context.report.keep(file.path, file.shots.size());
       continue;
     }
     if (read) load(context, task, std::move(read));
-    if (!renderers) {
-      renderers.emplace(*context.engine);
-      prepare(context, task, renderers->images, file.shots.front());
-      if (!task.background.is_rendered()) {
-        renderers->coverage.emplace(*context.engine, context.scene.resources, task);
-      }
-    }
+    if (!renderers) renderers = take_renderers(context, task, file.shots.front());
     render_file(context, *renderers, task, file);
   }
+  if (renderers) context.scene.renderers = std::move(renderers);
   context.report.done();
 }
 

@@ -15,12 +15,18 @@
 
 namespace heliograph::cli {
 
+struct Renderers;
+
 /// A scene on the device, kept for the next entry of the same one.
 struct SceneInUse {
   std::filesystem::path file;
   std::string environment;
   std::string variant;
   std::shared_ptr<const render::SceneResources> resources;
+  /// For the next entry that differs from `rendered` in its views alone, in the same `format`.
+  std::shared_ptr<Renderers> renderers;
+  protocol::RenderRequest rendered;
+  protocol::FileFormat format{};
 };
 
 /// What the entries of one command share. The device is set up for the first scene that can be

@@ -16,8 +16,8 @@ extern "C" {
 namespace heliograph::stream {
 namespace {
 
-/// What a container takes, and the encoder's options. Threads are few, so that the same frames give
-/// the same bytes on every machine.
+/// What a container takes, and the encoder's options. The number of threads is fixed, so that the
+/// same frames give the same bytes on every machine; they encode while the next frame is rendered.
 struct VideoFormat {
   const char* muxer;
   const char* encoder;
@@ -90,7 +90,7 @@ void VideoFile::State::open_encoder(const Options& options, const VideoFormat& f
   codec->color_trc = AVCOL_TRC_IEC61966_2_1;
   codec->framerate = av_d2q(options.fps, 1000);
   codec->time_base = av_inv_q(codec->framerate);
-  codec->thread_count = 1;
+  codec->thread_count = 4;
   if (file->oformat->flags & AVFMT_GLOBALHEADER) codec->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
   check_video(av_opt_set(codec->priv_data, "crf", format.crf, 0), "crf");
   for (const auto& [name, value] : format.options) {

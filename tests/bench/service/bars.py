@@ -85,10 +85,13 @@ def turntable(setup):
     model = measures.named_model(setup.assets, "DamagedHelmet")
     frames, size = (3, (64, 36)) if setup.smoke else (72, (1280, 720))
     quality = 0.97
-    ours = measures.render_turntable(setup, model, frames, size, quality)
+    # Both in the same light.
+    environment = measures.named_environment(setup.assets, "venice")
+    ours = measures.render_turntable(setup, model, frames, size, quality, environment)
     return [Row(f"turntable: {frames} frames, MP4", ours, "s"),
             *beside(setup, "turntable", ours, CYCLES,
-                    lambda: setup.blender.turntable(model, frames, size, quality), faster=5.0)]
+                    lambda: setup.blender.turntable(model, frames, size, quality, environment),
+                    faster=5.0)]
 
 
 def start(setup):

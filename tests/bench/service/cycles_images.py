@@ -2,7 +2,8 @@
 
 Run by Blender: blender --background --python cycles_images.py -- work.json
 
-The models stand in a white world, as three_page.html's stand in its room; the camera is the same.
+The models stand in an environment, or else in a white world, as three_page.html's stand in its room; the camera is the
+same.
 """
 
 import json
@@ -22,7 +23,7 @@ if "bool" not in vars(numpy):
 RESULT = "seconds of the images: "
 
 
-def begin(size):
+def begin(size, environment):
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
     scene.render.engine = "CYCLES"
@@ -33,7 +34,12 @@ def begin(size):
     scene.render.resolution_x, scene.render.resolution_y = size
     world = bpy.data.worlds.new("white")
     world.use_nodes = True
-    world.node_tree.nodes["Background"].inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
+    background = world.node_tree.nodes["Background"]
+    background.inputs["Color"].default_value = (1.0, 1.0, 1.0, 1.0)
+    if environment:
+        image = world.node_tree.nodes.new("ShaderNodeTexEnvironment")
+        image.image = bpy.data.images.load(environment)
+        world.node_tree.links.new(image.outputs["Color"], background.inputs["Color"])
     scene.world = world
 
 
@@ -74,7 +80,7 @@ def main():
     seconds = []
     for index, model in enumerate(work["models"]):
         before = time.monotonic()
-        begin(work["size"])
+        begin(work["size"], work.get("environment"))
         try:
             bpy.ops.import_scene.gltf(filepath=model)
             center, radius = bounding_sphere()

@@ -70,6 +70,10 @@ def named_model(assets, name):
     return next(path for path in find_models(assets, None) if name in os.path.basename(path))
 
 
+def named_environment(assets, name):
+    return next(path for path in glob.glob(os.path.join(assets, "hdr", "*.hdr")) if name in os.path.basename(path))
+
+
 def run_measured(command, **options):
     """Seconds, status and peak memory (MiB) of a process, and the time of each line of its output."""
     started = time.monotonic()
@@ -139,11 +143,11 @@ def similarity_to_truth(setup, images, most):
                for entry in chosen)
 
 
-def render_turntable(setup, model, frames, size, quality):
+def render_turntable(setup, model, frames, size, quality, environment):
     folder = setup.new_folder("turntable")
     seconds, status, _, _ = run_measured(
         [setup.binary, "render", model, "-o", "turn.mp4", "--turntable", str(frames), "--width", str(size[0]),
-         "--height", str(size[1]), "--quality", str(quality)], cwd=folder)
+         "--height", str(size[1]), "--quality", str(quality), "--environment", environment], cwd=folder)
     if status:
         raise RuntimeError(f"the turntable ended with {status}")
     return seconds

@@ -135,6 +135,7 @@ class CommandLine(unittest.TestCase):
 
     def test_mistyped_arguments_get_a_suggestion(self):
         self.fails("serv", saying="unknown command serv; did you mean serve")
+        self.fails("rendr", "a.glb", "-o", "a.png", saying="unknown command rendr; did you mean render")
         self.fails("serve", "--prot", "1", saying="unknown option --prot; did you mean --port")
         self.fails("--verson", saying="unknown option --verson; did you mean --version")
         self.fails(saying="a command is missing: serve, render")

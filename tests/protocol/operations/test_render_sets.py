@@ -111,7 +111,10 @@ class RenderSets(unittest.TestCase):
         self.assertEqual(self.images(), [])
 
     def test_shards_render_everything_once_with_the_same_bytes(self):
-        manifest = self.manifest(self.entries(5))
+        # Views that follow each other share a renderer, each shard other ones.
+        entries = [{**entry, "orbit": [40 * i, 10], "background": "transparent" if i > 2 else "sky"}
+                   for i, entry in enumerate(self.entries(5))]
+        manifest = self.manifest(entries)
         self.assertEqual(self.run_render("--manifest", manifest)[0], 0)
         alone = {name: self.bytes_of(name) for name in self.images()}
         for name in alone:
@@ -225,6 +228,37 @@ class RenderSets(unittest.TestCase):
                  "stream=nb_read_frames,codec_name,width,r_frame_rate", "-of", "csv=p=0", self.path("turn.mp4")],
                 capture_output=True, text=True, check=True).stdout.strip()
             self.assertEqual(found, "h264,64,30/1,5")
+
+    def test_frames_of_a_turntable_have_the_bytes_of_a_new_renderer(self):
+        arguments = (self.mirror, "-o", "turn_%d.png", "--turntable", "3", "--width", "96", "--samples", "2")
+        self.assertEqual(self.run_render(*arguments)[0], 0)
+        before = self.bytes_of("turn_2.png")
+        os.remove(self.path("turn_2.png"))
+        self.assertEqual(self.run_render(*arguments, "--resume")[0], 0)
+        self.assertEqual(self.bytes_of("turn_2.png"), before)
+
+    def test_frames_of_a_turntable_share_their_memory(self):
+        def page_faults(frames):
+            with subprocess.Popen(self.command(self.mirror, "-o", "turn.mp4", "--turntable", str(frames), "--width",
+                                               "640", "--samples", "1"), cwd=self.folder) as process:
+                _, status, used = os.wait4(process.pid, 0)
+                process.returncode = os.waitstatus_to_exitcode(status)
+            self.assertEqual(process.returncode, 0)
+            return used.ru_minflt
+        few, many = page_faults(2), page_faults(12)
+        self.assertLess(many - few, few)
+
+    def test_quality_of_a_video_is_that_of_its_frames(self):
+        entry = {"scene": self.mirror, "width": 96, "turntable": 7, "quality": 0.9}
+        code, events, err = self.run_render("--manifest", self.manifest([
+            {**entry, "output": "turn.mp4"}, {**entry, "output": "turn_%d.png"}]))
+        self.assertEqual((code, err), (0, ""))
+        samples = {number: [event["samples"] for event in events
+                            if event["event"] == "image" and event["entry"] == number] for number in (1, 2)}
+        self.assertEqual(samples[1][0], samples[2][0])
+        # Images stand alone: each is estimated.
+        for number, (video, alone) in enumerate(zip(samples[1], samples[2])):
+            self.assertIn(video, (alone, *(before / 2 for before in samples[1][:number])))
 
     def test_quality_is_that_of_the_converged_image(self):
         common = {"scene": self.mirror, "width": 96, "reference": "full"}

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <random>
+#include <utility>
 
 namespace heliograph::cli {
 namespace {
@@ -63,16 +64,22 @@ TEST(Quality, TheEstimateIsTheSimilarityToTheTruth) {
   std::mt19937 random(5);
   std::normal_distribution<double> noise(0.0, 30.0);
   QualityEstimate estimate;
+  double before = 0.0;  // of half of the samples
   int compared = 0;
   for (int samples = 1; samples <= 256; ++samples) {
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += truth[i] + noise(random);
     if (!estimate.wants(static_cast<std::uint32_t>(samples))) continue;
     const auto rgba = to_rgba(sum, samples);
     const auto expected = estimate.add(rgba, width, static_cast<std::uint32_t>(samples));
+    const double similar = similarity(truth, rgba);
+    const double half = std::exchange(before, similar);
     if (!expected) continue;
     // Noise above the contrast hides how much of the contrast there is.
     const double tolerance = *expected > 0.8 ? 0.01 : 0.05;
-    EXPECT_NEAR(*expected, similarity(truth, rgba), tolerance) << samples << " samples";
+    EXPECT_NEAR(*expected, similar, tolerance) << samples << " samples";
+    if (half > 0.8) {
+      EXPECT_NEAR(estimate.half(), half, 0.01) << samples / 2 << " samples";
+    }
     ++compared;
   }
   EXPECT_EQ(compared, 8) << "at 2, 4, 8 ... 256 samples";
@@ -93,6 +100,16 @@ TEST(Quality, OnlyDoublingsAreCompared) {
   EXPECT_TRUE(estimate.wants(6));
   EXPECT_FALSE(estimate.add(black, width, 7));
   EXPECT_TRUE(estimate.add(black, width, 14));
+}
+
+TEST(Quality, FramesTakeTheHalfThatWouldHaveDoneUntilTheNextEstimate) {
+  SampleForecast forecast;
+  EXPECT_FALSE(forecast.next());
+  forecast.add(8, false);
+  EXPECT_FALSE(forecast.next()) << "eight samples were needed";
+  forecast.add(8, true);
+  for (int frame = 0; frame < 5; ++frame) EXPECT_EQ(forecast.next(), 4u);
+  EXPECT_FALSE(forecast.next());
 }
 
 }  // namespace
