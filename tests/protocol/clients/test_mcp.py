@@ -3,6 +3,7 @@
 import base64
 import copy
 import json
+import math
 import os
 import subprocess
 import tempfile
@@ -109,6 +110,29 @@ class ModelContextProtocol(unittest.TestCase):
         self.agent.result("nodes_patch", nodes=[node], patch={"visible": False})
         self.assertLess(reddest(self.agent.look())[0], 30)
         self.agent.result("nodes_patch", nodes=[node], patch={"visible": True})
+
+    def test_a_client_measures_and_annotates_what_it_sees(self):
+        self.agent.result("camera_fit")
+        _, x, y = reddest(self.agent.look())
+        snap = self.agent.result("scene_snap", x=x, y=y, radius=0)
+        node = snap["surface"]["node"]
+        self.assertEqual(self.agent.result("nodes_info", nodes=[node])["names"], [DEFECT])
+        added = self.agent.result("measurements_add", kind="size", nodes=[node])
+        extent = added["measurements"][-1]["extent"]
+        centre = [2.5 * int(DEFECT[-1]), 0, 0]
+        away = math.dist(snap["position"], centre)
+        self.assertAlmostEqual(away / (max(extent) / 2), 1, delta=0.05)
+        beyond = [snap["position"][0], snap["position"][1], snap["position"][2] + 3]
+        added = self.agent.result("measurements_add", kind="distance", points=[
+            {"surface": snap["surface"]}, {"position": beyond}])
+        self.assertAlmostEqual(added["measurements"][-1]["value"], 3, places=4)
+        noted = self.agent.result("annotations_add", surface=snap["surface"], text="Red")
+        self.assertEqual(noted["annotations"][-1]["text"], "Red")
+        failed = self.agent.call("measurements_add", kind="distance", points=[])
+        self.assertTrue(failed["isError"])
+        self.assertIn("points", failed["content"][0]["text"])
+        for kind in ("measurements", "annotations"):
+            self.assertEqual(self.agent.result(f"{kind}_clear")[kind], [])
 
     def test_the_server_introduces_itself_and_its_tools(self):
         hello = self.agent.ask("initialize", {"protocolVersion": "2025-03-26", "capabilities": {},
