@@ -19,18 +19,25 @@ import tempfile
 from heliograph import find_program
 
 SOME_FAILED = 3
+# Workers that sample their own stack every ten milliseconds take several percent of a core each, while they do nothing
+# but wait for the renderer.
+QUIET_WORKERS = {"distributed.worker.profile.enabled": False, "distributed.admin.tick.interval": "500 ms",
+                 "distributed.admin.tick.limit": "1 minute"}
 
 
 def render_shard(manifest, shard, folder, arguments, threads):
     """The report of one shard. Runs on a worker."""
-    limits = {"LP_NUM_THREADS": str(threads)} if threads else {}
+    environment = {**os.environ, **({"LP_NUM_THREADS": str(threads)} if threads else {})}
+    # Workers give freed memory back at once, which is for Python's objects: a renderer would fetch the memory of each
+    # frame from the kernel again, and take twice as long.
+    environment.pop("MALLOC_TRIM_THRESHOLD_", None)
     with tempfile.TemporaryDirectory() as scratch:
         report = os.path.join(scratch, "report.json")
         command = [find_program(), "render", "--manifest", manifest, "--shard", shard, "--resume", "--progress", "none",
                    "--report", report, *arguments]
         if threads:
             command = ["taskset", "--cpu-list", own_processors(threads), *command]
-        done = subprocess.run(command, cwd=folder, env={**os.environ, **limits}, capture_output=True, text=True,
+        done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True,
                               check=False)
         if not os.path.exists(report) or os.path.getsize(report) == 0:
             raise RuntimeError(done.stderr.strip() or f"the renderer ended with {done.returncode}")
@@ -67,20 +74,22 @@ def main():
     parser.add_argument("--scheduler", help="address of a running scheduler [workers of this machine]")
     parser.add_argument("--workers", type=int, default=os.cpu_count(), help="without --scheduler")
     parser.add_argument("--threads", type=int, default=0, help="processors of each shard [all]")
-    parser.add_argument("--shards", type=int, help="[four for each worker]")
+    parser.add_argument("--shards", type=int, help="[two for each worker]")
     parser.add_argument("--retries", type=int, default=3, help="of a shard whose renderer failed")
     parser.add_argument("--folder", default=".", help="where outputs begin")
     parser.add_argument("--report")
     parser.add_argument("arguments", nargs="*", help="for heliograph render, after --")
     options = parser.parse_args()
+    import dask  # pylint: disable=import-outside-toplevel
     from distributed import Client, LocalCluster  # pylint: disable=import-outside-toplevel
 
     cluster = None
     if not options.scheduler:
+        dask.config.set(QUIET_WORKERS)
         cluster = LocalCluster(n_workers=options.workers, threads_per_worker=1, dashboard_address=None)
     with Client(options.scheduler or cluster) as client:
         workers = max(1, len(client.scheduler_info()["workers"]))
-        shards = min(options.shards or 4 * workers, count_entries(options.manifest))
+        shards = min(options.shards or 2 * workers, count_entries(options.manifest))
         manifest, folder = os.path.abspath(options.manifest), os.path.abspath(options.folder)
         tasks = [client.submit(render_shard, manifest, f"{i + 1}/{shards}", folder, options.arguments, options.threads,
                                pure=False, retries=options.retries) for i in range(shards)]
