@@ -1,11 +1,9 @@
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
-#include <cerrno>
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
@@ -13,9 +11,10 @@
 #include "net/http/beast_messages.hpp"
 #include "net/http/job_routes.hpp"
 #include "net/http/request_head.hpp"
+#include "net/http/response_writer.hpp"
+#include "net/http/upload_requests.hpp"
 #include "net/security/rate_limit.hpp"
 #include "net/tcp_progress.hpp"
-#include "net/websocket/paced_write.hpp"
 #include "net/websocket/upgrade_refusal.hpp"
 #include "protocol/messages/messages.hpp"
 #include "session/event_log.hpp"
@@ -47,26 +46,6 @@ constexpr std::size_t discarded_at_once = 16 * 1024;
 constexpr std::size_t head_bytes_at_once = 4 * 1024;
 // How often it is checked whether the client of an answer that is being made is still there.
 constexpr std::chrono::milliseconds presence_interval{500};
-
-HttpResponse upload_response(const session::UploadedFile& file) {
-  nlohmann::json described{{"name", file.name}, {"bytes", file.bytes}};
-  if (file.kind == session::UploadKind::scene) {
-    described["triangles"] = file.triangles;
-  } else {
-    described["width"] = file.width;
-    described["height"] = file.height;
-  }
-  HttpResponse response = json_response(described.dump());
-  response.status = 201;
-  return response;
-}
-
-/// Of the file that an upload is written to; all others are the connection's.
-bool is_of_disk(error_code error) {
-  return error == boost::system::errc::no_space_on_device ||
-         error == boost::system::errc::io_error ||
-         error == error_code(EDQUOT, asio::error::get_system_category());
-}
 
 class HttpConnection : public Connection, public std::enable_shared_from_this<HttpConnection> {
  public:
@@ -203,8 +182,9 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     answering_ = true;
     const HttpRequest request = to_request(BeastRequest(parser_->get()), stream_);
     framing_.cors = context_.access.cors_headers(request);
-    const auto size = parser_->content_length();
-    if (auto refused = upload_refusal(request, size)) return send(*std::move(refused));
+    std::optional<std::uint64_t> size;
+    if (const auto told = parser_->content_length()) size = *told;
+    if (auto refused = upload_refusal(context_, request, size)) return send(*std::move(refused));
     const UploadAddress address = *upload_address(request.path);
     auto begun = context_.uploads->begin(address.kind, std::string(address.name), *size);
     if (!begun) return send(error_response(begun.error()));
@@ -218,26 +198,6 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     }
     upload_deadline_ = std::chrono::steady_clock::now() + max_upload_duration;
     send_continue(upload_parser_->get(), [self = shared_from_this()] { self->receive_upload(); });
-  }
-
-  std::optional<HttpResponse> upload_refusal(const HttpRequest& request,
-                                             boost::optional<std::uint64_t> length) const {
-    if (context_.certificate && !request.secure) return text_response(400, "Use HTTPS.");
-    Admission admission = context_.access.admit(request);
-    if (admission.refusal) return *std::move(admission.refusal);
-    if (admission.role != Role::control) {
-      return text_response(403, "This token is read-only and cannot upload.");
-    }
-    if (context_.draining) return retry_later("The server is shutting down.");
-    const std::optional<UploadAddress> address = upload_address(request.path);
-    if (!address) {
-      return text_response(404,
-                           "Scenes go to /api/v1/scenes/NAME, environments to "
-                           "/api/v1/environments/NAME.");
-    }
-    if (!length) return text_response(411, "An upload needs a Content-Length.");
-    if (*length == 0) return text_response(400, "The upload is empty.");
-    return context_.router.name_conflict(*address);
   }
 
   void receive_upload() {
@@ -396,35 +356,13 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   }
 
   void send(HttpResponse answer) {
-    if (answer.content && !framing_.head_only) return send_content(std::move(answer));
-    if (!outgoing_.has_room(answer.body.size())) {
-      answer = retry_later("Too many responses wait to be read by other clients.");
-    }
-    response_ = to_message(context_, std::move(answer), framing_);
-    outgoing_.hold(response_.body().size());
-    serializer_.emplace(response_);
-    const PaceKeeper keeper({.timeout = idle_timeout, .bytes_per_second = min_bytes_per_second},
-                            PaceKeeper::Clock::now());
-    write_paced(stream_, *serializer_, keeper,
-                [self = shared_from_this()](error_code error) { self->sent(error); });
-  }
-
-  void send_content(HttpResponse answer) {
-    download_ = to_download(context_, std::move(answer), framing_);
-    download_serializer_.emplace(*download_);
-    const PaceKeeper keeper({.timeout = idle_timeout, .bytes_per_second = min_bytes_per_second},
-                            PaceKeeper::Clock::now());
-    write_paced(stream_, *download_serializer_, keeper,
-                [self = shared_from_this()](error_code error) { self->sent(error); });
+    writer_.write(stream_, std::move(answer), framing_,
+                  [self = shared_from_this()](error_code error) { self->sent(error); });
   }
 
   void sent(error_code error) {
     answering_ = false;
-    serializer_.reset();
-    response_ = {};
-    download_serializer_.reset();
-    download_.reset();
-    outgoing_.hold(0);
+    writer_.finish();
     if (error) return;
     if (!framing_.keep_alive || shutting_down_) return close();
     read();
@@ -463,11 +401,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   std::chrono::steady_clock::time_point upload_deadline_;
   asio::steady_timer presence_timer_;  // runs while an answer is being made
   Framing framing_;
-  OutgoingBytes outgoing_{context_.outgoing_bytes};
-  BeastResponse response_;
-  std::optional<http::response_serializer<http::string_body>> serializer_;
-  std::optional<BeastDownload> download_;
-  std::optional<http::response_serializer<ContentBody>> download_serializer_;
+  ResponseWriter writer_{context_};
   RateLimit calls_;
   bool first_ = true;
   bool answering_ = false;
