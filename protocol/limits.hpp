@@ -33,6 +33,14 @@ inline constexpr float max_field_of_view = 170.0f;
 /// Nodes of a scene in one message.
 inline constexpr std::size_t max_listed_nodes = 10000;
 
+/// Lights, materials or nodes in an edit document, and lights that a session adds to its scene.
+inline constexpr std::size_t max_edited_parts = 10000;
+inline constexpr std::size_t max_added_lights = 256;
+inline constexpr std::size_t max_edited_nodes = 100000;
+/// Of lights, kelvin: where the approximation of the Planckian locus holds.
+inline constexpr double min_temperature = 1667.0;
+inline constexpr double max_temperature = 25000.0;
+
 /// Lengths of names, bytes.
 inline constexpr std::size_t max_session_name = 64;  // viewers, presets and buffers as well
 inline constexpr std::size_t max_node_name = 256;    // cameras, clips, lights, materials, variants

@@ -7,6 +7,7 @@
 
 #include "protocol/json/fields.hpp"
 #include "protocol/messages/animation_messages.hpp"
+#include "protocol/messages/edit_messages.hpp"
 #include "protocol/messages/session_messages.hpp"
 
 // Messages about scenes: the catalogue, loading, the loaded scene.
@@ -43,6 +44,7 @@ struct SceneLoad {
   std::string name;
   std::optional<std::string> scene;
   std::optional<std::string> variant;
+  std::optional<EditDocument> edits;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -54,6 +56,8 @@ struct SceneLoad {
         field("variant", &SceneLoad::variant,
               "Material variant of the file to apply. Absent: the default materials.")
             .length(1, max_node_name),
+        field("edits", &SceneLoad::edits,
+              "A document that edits.get returned, applied as by edits.apply."),
     };
   }
   bool operator==(const SceneLoad&) const = default;

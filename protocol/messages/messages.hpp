@@ -6,6 +6,7 @@
 
 #include "protocol/messages/annotation_messages.hpp"
 #include "protocol/messages/bookmark_messages.hpp"
+#include "protocol/messages/edit_messages.hpp"
 #include "protocol/messages/frame_messages.hpp"
 #include "protocol/messages/job_messages.hpp"
 #include "protocol/messages/loading_messages.hpp"

@@ -8,6 +8,7 @@
 #include "protocol/json/fields.hpp"
 #include "protocol/json/raw_json.hpp"
 #include "protocol/limits.hpp"
+#include "protocol/messages/edit_messages.hpp"
 #include "protocol/messages/kinds.hpp"
 #include "protocol/settings/settings.hpp"
 
@@ -70,6 +71,7 @@ struct RenderRequest {
   std::optional<RawJson> settings;
   std::string buffer = "output";
   std::string variant;
+  std::optional<EditDocument> edits;
   std::string environment;
   std::string background = "sky";
 
@@ -138,6 +140,8 @@ struct RenderRequest {
         field("buffer", &RenderRequest::buffer, "Buffer to write.")
             .length(1, max_session_name)
             .or_default(),
+        field("edits", &RenderRequest::edits,
+              "Changes of the scene: a document that edits.get returned."),
         field("variant", &RenderRequest::variant, "Material variant; empty: the file's default.")
             .length(0, max_node_name)
             .or_default(),

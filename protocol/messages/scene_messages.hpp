@@ -20,6 +20,7 @@ struct LightInfo {
   LightType type = LightType::directional;
   bool enabled = true;
   Vec3 color{1.0f, 1.0f, 1.0f};
+  std::optional<float> temperature;
   float intensity = 0.0f;
   std::optional<Vec3> position;
   std::optional<Vec3> direction;
@@ -28,6 +29,9 @@ struct LightInfo {
   std::optional<float> angular_diameter;
   std::optional<float> width;
   std::optional<float> height;
+  std::optional<float> inner_cone;
+  std::optional<float> outer_cone;
+  bool added = false;
   std::vector<std::string> changed;
 
   static constexpr auto fields() {
@@ -36,6 +40,9 @@ struct LightInfo {
         field("type", &LightInfo::type, "Type of the light."),
         field("enabled", &LightInfo::enabled, "Whether the light is on."),
         field("color", &LightInfo::color, "Linear colour."),
+        field("temperature", &LightInfo::temperature,
+              "Temperature of the black body that gives the colour; absent: it is no such colour.")
+            .unit("kelvin"),
         field("intensity", &LightInfo::intensity,
               "Factor on the colour: lux (directional), candela (point, spot) or radiance "
               "(rectangle, disk)."),
@@ -53,6 +60,12 @@ struct LightInfo {
             .unit("degrees"),
         field("width", &LightInfo::width, "Width of a rectangle.").unit("metres"),
         field("height", &LightInfo::height, "Height of a rectangle.").unit("metres"),
+        field("inner_cone", &LightInfo::inner_cone,
+              "Angle from the axis at which a spot light begins to fade.")
+            .unit("degrees"),
+        field("outer_cone", &LightInfo::outer_cone, "Angle from the axis at which it ends.")
+            .unit("degrees"),
+        field("added", &LightInfo::added, "Whether the session has added it; see lights.add."),
         field("changed", &LightInfo::changed, "Members that differ from the scene file."),
     };
   }
@@ -76,6 +89,7 @@ struct LightPatch {
   static constexpr bool strict = true;
   Change<bool> enabled;
   Change<Vec3> color;
+  Change<float> temperature;
   Change<float> intensity;
   Change<Vec3> position;
   Change<Vec3> direction;
@@ -84,11 +98,17 @@ struct LightPatch {
   Change<float> angular_diameter;
   Change<float> width;
   Change<float> height;
+  Change<float> inner_cone;
+  Change<float> outer_cone;
 
   static constexpr auto fields() {
     return std::tuple{
         field("enabled", &LightPatch::enabled, "Whether the light is on."),
-        field("color", &LightPatch::color, "Linear colour.").range(0, 1e6),
+        field("color", &LightPatch::color, "Linear colour; it ends a temperature.").range(0, 1e6),
+        field("temperature", &LightPatch::temperature,
+              "Gives the light the colour of a black body; takes precedence over color.")
+            .range(min_temperature, max_temperature)
+            .unit("kelvin"),
         field("intensity", &LightPatch::intensity, "Factor on the colour.").range(0, 1e9),
         field("position", &LightPatch::position, "Centre, world space.")
             .range(-max_coordinate, max_coordinate)
@@ -108,6 +128,13 @@ struct LightPatch {
         field("height", &LightPatch::height, "Height of a rectangle.")
             .range(1e-6, 1e6)
             .unit("metres"),
+        field("inner_cone", &LightPatch::inner_cone,
+              "Angle from the axis at which a spot light begins to fade; below outer_cone.")
+            .range(0, 90)
+            .unit("degrees"),
+        field("outer_cone", &LightPatch::outer_cone, "Angle from the axis at which it ends.")
+            .range(0.01, 90)
+            .unit("degrees"),
     };
   }
   bool operator==(const LightPatch&) const = default;

@@ -230,10 +230,110 @@ export interface SceneList {
   scenes: SceneEntry[];
 }
 
+export interface LightPatch {
+  /** Apparent diameter: larger lights cast softer shadows; the sun's is 0.53. [degrees] */
+  angular_diameter?: number | null;
+  /** Linear colour; it ends a temperature. */
+  color?: Vector3 | null;
+  /** Direction of the light rays, world space; any length except 0. */
+  direction?: Vector3 | null;
+  /** Whether the light is on. */
+  enabled?: boolean | null;
+  /** Height of a rectangle. [metres] */
+  height?: number | null;
+  /** Angle from the axis at which a spot light begins to fade; below outer_cone. [degrees] */
+  inner_cone?: number | null;
+  /** Factor on the colour. */
+  intensity?: number | null;
+  /** Angle from the axis at which it ends. [degrees] */
+  outer_cone?: number | null;
+  /** Centre, world space. [metres] */
+  position?: Vector3 | null;
+  /** Radius: larger lights cast softer shadows. [metres] */
+  radius?: number | null;
+  /** Range; 0: unlimited. [metres] */
+  range?: number | null;
+  /** Gives the light the colour of a black body; takes precedence over color. [kelvin] */
+  temperature?: number | null;
+  /** Width of a rectangle. [metres] */
+  width?: number | null;
+}
+
+export interface LightAdd {
+  /**
+   * Its name, which no other light may have; absent: one is made. A removed light of the file comes
+   * back by its name.
+   */
+  name?: string;
+  /** Its members; absent ones suit the size of the scene, in whose middle it shines from above. */
+  patch?: LightPatch;
+  /** Type of the light. */
+  type: "directional" | "point" | "spot" | "rectangle" | "disk";
+}
+
+export interface EditDocumentEnvironment {
+  /** The setting environment.intensity. */
+  intensity?: number;
+  /** A name from environment.list; null: the scene's own. */
+  name: string | null;
+  /** The setting environment.rotation. [degrees] */
+  rotation?: number;
+}
+
+export interface EditDocumentLights {
+  /** A name from lights.list. */
+  light: string;
+  /** A merge patch (RFC 7386); null restores the value of the scene file. */
+  patch: LightPatch;
+}
+
+export interface MaterialPatch {
+  /** Linear factor. */
+  base_color?: Vector3 | null;
+  /** Linear emitted radiance. */
+  emissive?: Vector3 | null;
+  /** Metalness. */
+  metallic?: number | null;
+  /** Scale of the normal texture. */
+  normal_scale?: number | null;
+  /** Strength of the occlusion texture. */
+  occlusion_strength?: number | null;
+  /** Perceptual roughness. */
+  roughness?: number | null;
+}
+
+export interface EditDocumentMaterials {
+  /** A name from materials.list. */
+  material: string;
+  /** A merge patch (RFC 7386); null restores the value of the scene file. */
+  patch: MaterialPatch;
+}
+
+export interface EditDocument {
+  /** Lights that are not in the file, as lights.add. */
+  added_lights?: LightAdd[];
+  /** The environment; absent: it stays as it is. */
+  environment?: EditDocumentEnvironment;
+  /** Ids of all nodes that are not visible. */
+  hidden?: number[];
+  /** See nodes.isolate. */
+  isolated?: number[];
+  /** Changes of the file's lights, as lights.patch. */
+  lights?: EditDocumentLights[];
+  /** Changes of materials, as materials.patch. */
+  materials?: EditDocumentMaterials[];
+  /** Names of the file's lights that are removed. */
+  removed_lights?: string[];
+  /** Version of this format. */
+  version: number;
+}
+
 /** Parameters of scene.load. */
 export interface SceneLoadParams {
   /** A name from scene.list. */
   name: string;
+  /** A document that edits.get returned, applied as by edits.apply. */
+  edits?: EditDocument;
   /**
    * The scene to load from a file with several: its name, or its index from 0. Absent: the file's
    * default.
@@ -665,6 +765,8 @@ export interface ReferenceState {
 }
 
 export interface LightInfo {
+  /** Whether the session has added it; see lights.add. */
+  added: boolean;
   /** Apparent diameter of a directional light. [degrees] */
   angular_diameter?: number;
   /** Members that differ from the scene file. */
@@ -677,18 +779,24 @@ export interface LightInfo {
   enabled: boolean;
   /** Height of a rectangle. [metres] */
   height?: number;
+  /** Angle from the axis at which a spot light begins to fade. [degrees] */
+  inner_cone?: number;
   /**
    * Factor on the colour: lux (directional), candela (point, spot) or radiance (rectangle, disk).
    */
   intensity: number;
   /** Unique name for lights.patch. */
   name: string;
+  /** Angle from the axis at which it ends. [degrees] */
+  outer_cone?: number;
   /** Centre, world space; absent for directional lights. [metres] */
   position?: Vector3;
   /** Radius of point, spot and disk lights. [metres] */
   radius?: number;
   /** Range of point and spot lights; 0: unlimited. [metres] */
   range?: number;
+  /** Temperature of the black body that gives the colour; absent: it is no such colour. [kelvin] */
+  temperature?: number;
   /** Type of the light. */
   type: "directional" | "point" | "spot" | "rectangle" | "disk";
   /** Width of a rectangle. [metres] */
@@ -696,42 +804,11 @@ export interface LightInfo {
 }
 
 /** Result of lights.list. */
-export interface LightsListResult {
+export interface LightList {
   /** The lights of the scene with the session's edits. */
   lights: LightInfo[];
   /** Revision of the session's state. */
   rev: number;
-}
-
-export interface LightPatch {
-  /** Apparent diameter: larger lights cast softer shadows; the sun's is 0.53. [degrees] */
-  angular_diameter?: number | null;
-  /** Linear colour. */
-  color?: Vector3 | null;
-  /** Direction of the light rays, world space; any length except 0. */
-  direction?: Vector3 | null;
-  /** Whether the light is on. */
-  enabled?: boolean | null;
-  /** Height of a rectangle. [metres] */
-  height?: number | null;
-  /** Factor on the colour. */
-  intensity?: number | null;
-  /** Centre, world space. [metres] */
-  position?: Vector3 | null;
-  /** Radius: larger lights cast softer shadows. [metres] */
-  radius?: number | null;
-  /** Range; 0: unlimited. [metres] */
-  range?: number | null;
-  /** Width of a rectangle. [metres] */
-  width?: number | null;
-}
-
-/** Parameters of lights.patch. */
-export interface LightsPatchParams {
-  /** A name from lights.list. */
-  light: string;
-  /** A merge patch (RFC 7386); null restores the value of the scene file. */
-  patch: LightPatch;
 }
 
 /** Result of lights.patch. */
@@ -740,6 +817,12 @@ export interface LightsPatchResult {
   light: LightInfo;
   /** Revision of the session's state. */
   rev: number;
+}
+
+/** Parameters of lights.remove. */
+export interface LightsRemoveParams {
+  /** A name from lights.list. */
+  light: string;
 }
 
 export interface MaterialInfo {
@@ -769,29 +852,6 @@ export interface MaterialsListResult {
   materials: MaterialInfo[];
   /** Revision of the session's state. */
   rev: number;
-}
-
-export interface MaterialPatch {
-  /** Linear factor. */
-  base_color?: Vector3 | null;
-  /** Linear emitted radiance. */
-  emissive?: Vector3 | null;
-  /** Metalness. */
-  metallic?: number | null;
-  /** Scale of the normal texture. */
-  normal_scale?: number | null;
-  /** Strength of the occlusion texture. */
-  occlusion_strength?: number | null;
-  /** Perceptual roughness. */
-  roughness?: number | null;
-}
-
-/** Parameters of materials.patch. */
-export interface MaterialsPatchParams {
-  /** A name from materials.list. */
-  material: string;
-  /** A merge patch (RFC 7386); null restores the value of the scene file. */
-  patch: MaterialPatch;
 }
 
 /** Result of materials.patch. */
@@ -829,6 +889,22 @@ export interface EnvironmentSetParams {
   name?: string | null;
   /** Also sets environment.rotation. [degrees] */
   rotation?: number;
+}
+
+/** Result of edits.get. */
+export interface EditsState {
+  /** All that differs from the scene's file. */
+  edits: EditDocument;
+  /** Revision of the session's state. */
+  rev: number;
+  /** Name of the scene that the document belongs to. */
+  scene: string;
+}
+
+/** Parameters of edits.apply. */
+export interface EditsApplyParams {
+  /** A document that edits.get returned. */
+  edits: EditDocument;
 }
 
 /** Parameters of scene.pick. */
@@ -1153,6 +1229,8 @@ export interface JobCreateParamsEntries {
   camera?: string;
   /** Animation clip; empty: the default pose. */
   clip?: string;
+  /** Changes of the scene: a document that edits.get returned. */
+  edits?: EditDocument;
   /** Image that lights the scene; empty: the one beside the scene. */
   environment?: string;
   /** Keeps the direction of the cameras and moves them so that they see the whole scene. */
@@ -1436,6 +1514,14 @@ export interface LightsChangedNotification {
   rev: number;
 }
 
+/** Parameters of the notification edits.changed. */
+export interface EditsChangedNotification {
+  /** The viewer that changed them; empty: the server. */
+  by: string;
+  /** Revision of the session's state. */
+  rev: number;
+}
+
 /** Parameters of the notification materials.changed. */
 export interface MaterialsChangedNotification {
   /** The viewer that changed it; empty: the server. */
@@ -1622,17 +1708,31 @@ export interface Methods {
   /** Shows the hybrid image again and restores the settings that reference.start changed. */
   "reference.stop": { params: Empty; result: ReferenceState };
   /** Lists the lights of the scene with the session's edits. */
-  "lights.list": { params: Empty; result: LightsListResult };
+  "lights.list": { params: Empty; result: LightList };
   /** Edits a light of this session's scene by a merge patch (RFC 7386). */
-  "lights.patch": { params: LightsPatchParams; result: LightsPatchResult };
+  "lights.patch": { params: EditDocumentLights; result: LightsPatchResult };
+  /** Adds a light to this session's scene. */
+  "lights.add": { params: LightAdd; result: LightsPatchResult };
+  /** Removes a light from this session's scene; lights.add brings back one of the file. */
+  "lights.remove": { params: LightsRemoveParams; result: LightList };
   /** Lists the materials of the scene with the session's edits. */
   "materials.list": { params: Empty; result: MaterialsListResult };
   /** Edits a material of this session's scene by a merge patch (RFC 7386). */
-  "materials.patch": { params: MaterialsPatchParams; result: MaterialsPatchResult };
+  "materials.patch": { params: EditDocumentMaterials; result: MaterialsPatchResult };
   /** Lists the environments that the server has, and returns the current one. */
   "environment.list": { params: Empty; result: EnvironmentState };
   /** Sets the environment of this session, which stays with other scenes, or rotates it. */
   "environment.set": { params: EnvironmentSetParams; result: EnvironmentState };
+  /**
+   * Returns all that this session has changed in its scene as one document, for edits.apply,
+   * scene.load and heliograph render --edits.
+   */
+  "edits.get": { params: Empty; result: EditsState };
+  /**
+   * Puts the changes of a document in the place of all that this session has changed in its scene.
+   * A document that does not fit the scene changes nothing.
+   */
+  "edits.apply": { params: EditsApplyParams; result: EditsState };
   /** Returns the surface that is visible at a point of the image. */
   "scene.pick": { params: ScenePickParams; result: Pick };
   /** Returns the value of every buffer at a point of the image. */
@@ -1718,6 +1818,11 @@ export interface Notifications {
   "stats.frame": FrameStats;
   /** Another viewer changed a light. */
   "lights.changed": LightsChangedNotification;
+  /**
+   * Another viewer added or removed a light, or applied an edit document: lights, materials and
+   * nodes are to be listed again.
+   */
+  "edits.changed": EditsChangedNotification;
   /** Another viewer changed a material. */
   "materials.changed": MaterialsChangedNotification;
   /** Another viewer changed the environment. */

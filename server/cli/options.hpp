@@ -83,6 +83,7 @@ struct RenderOptions {
   protocol::RenderRequest request;  // of every scene; what an entry of the manifest lacks
   std::string format;               // empty: by the extension of the output
   std::string reference;            // reference.scope; empty: no path tracing
+  std::string edits;                // file; empty: none
   std::string orbit;                // AZIMUTH,ELEVATION; empty: none
   SettingsOptions settings;
   scene::ImportLimits limits;

@@ -9,6 +9,7 @@
 
 #include "jobs/job_queue.hpp"
 #include "session/commands/commands.hpp"
+#include "session/state/edited_parts.hpp"
 
 namespace heliograph::session {
 
@@ -271,7 +272,19 @@ void SessionHost::fail_creation(const std::shared_ptr<Session>& session, const p
 
 void SessionHost::load_scene(std::shared_ptr<Session> session, const protocol::SceneLoad& request,
                              const std::string& by, SceneLoader::Completion done) {
-  loader_.load(std::move(session), request, by, std::move(done));
+  if (!request.edits || !request.edits->environment || !request.edits->environment->name) {
+    return loader_.load(std::move(session), request, by, std::move(done));
+  }
+  const std::string name = *request.edits->environment->name;
+  if (const auto known = environments_.find(name); !known) {
+    return done(below(known.error(), "edits.environment"));
+  }
+  loader_.load(session, request, by, [this, session, name, by, done](auto loaded) {
+    if (!loaded) return done(loaded.error());
+    environments_.show(session, name, by, [done, loaded](Result<void> outcome) {
+      done(outcome ? loaded : below(outcome.error(), "edits.environment"));
+    });
+  });
 }
 
 void SessionHost::on_first_frame(std::function<void()> callback) {

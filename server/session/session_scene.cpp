@@ -1,8 +1,10 @@
 #include "session/session_scene.hpp"
 
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "session/library/scene_description.hpp"
+#include "session/state/edited_parts.hpp"
 
 namespace heliograph::session {
 
@@ -14,18 +16,21 @@ Result<protocol::SceneInfo> SessionScene::info() const {
   return core_.scene_info;
 }
 
-void SessionScene::show(LoadedScene scene, const std::string& by) {
+Result<void> SessionScene::show(LoadedScene scene, const protocol::EditDocument* edits,
+                                const std::string& by) {
   const std::lock_guard lock(core_.mutex);
+  if (const auto fits = adopt(scene.scene, edits ? *edits : protocol::EditDocument(), by); !fits) {
+    return fits;
+  }
   core_.scene = scene.scene;
   core_.scene_info = describe_scene(scene);
-  core_.edits = SceneEdits(core_.scene);
-  core_.nodes = NodeState(core_.scene);
   core_.resources = std::move(scene.resources);
   core_.timeline.reset_clock();
   core_.camera.reset(*core_.scene, core_.aspect());
   core_.changed();
   core_.notify_others<protocol::notifications::scene_changed>(
       by, {.scene = core_.scene_info, .by = by});
+  return {};
 }
 
 void SessionScene::unload(const std::string& by) {
@@ -64,6 +69,80 @@ Result<protocol::LightState> SessionScene::patch_light(const protocol::LightsPat
         by, {.light = *light, .rev = core_.rev, .by = by});
   }
   return protocol::LightState{.light = *std::move(light), .rev = core_.rev};
+}
+
+Result<protocol::LightState> SessionScene::add_light(const protocol::LightAdd& request,
+                                                     const std::string& by) {
+  const std::lock_guard lock(core_.mutex);
+  if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
+  Result<protocol::LightInfo> light = core_.edits.add(request);
+  if (!light) return light.error();
+  edits_changed(by);
+  return protocol::LightState{.light = *std::move(light), .rev = core_.rev};
+}
+
+Result<protocol::LightList> SessionScene::remove_light(const protocol::LightName& request,
+                                                       const std::string& by) {
+  const std::lock_guard lock(core_.mutex);
+  if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
+  if (const auto removed = core_.edits.remove_light(request.light); !removed) {
+    return removed.error();
+  }
+  edits_changed(by);
+  return protocol::LightList{.lights = core_.edits.lights(), .rev = core_.rev};
+}
+
+Result<protocol::EditsState> SessionScene::edits() const {
+  const std::lock_guard lock(core_.mutex);
+  if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
+  protocol::EditsState state{.scene = core_.scene_info.name, .rev = core_.rev};
+  core_.edits.describe(state.edits);
+  state.edits.hidden = core_.nodes.hidden();
+  state.edits.isolated = core_.nodes.isolated();
+  state.edits.environment =
+      protocol::EnvironmentEdit{.name = core_.environment_name,
+                                .rotation = core_.settings.environment.rotation,
+                                .intensity = core_.settings.environment.intensity};
+  return state;
+}
+
+Result<void> SessionScene::apply_edits(const protocol::EditDocument& document,
+                                       const std::string& by) {
+  const std::lock_guard lock(core_.mutex);
+  if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded;
+  const std::vector<std::uint32_t> selected = core_.nodes.selected();
+  if (const Result<void> fits = adopt(core_.scene, document, by); !fits) return fits;
+  core_.nodes.select(selected);
+  edits_changed(by);
+  return {};
+}
+
+Result<void> SessionScene::adopt(const std::shared_ptr<const scene::Scene>& scene,
+                                 const protocol::EditDocument& document, const std::string& by) {
+  SceneEdits edits(scene);
+  if (const auto fits = edits.apply(document); !fits) return fits;
+  NodeState nodes(scene);
+  if (const auto fits = apply_visibility(document, nodes); !fits) return fits;
+  if (const auto& environment = document.environment) {
+    const protocol::RawJson values(nlohmann::json{
+        {"environment",
+         {{"rotation", environment->rotation}, {"intensity", environment->intensity}}}});
+    const auto set = core_.patch_settings(values, by);
+    if (!set) return set.error();
+    if (!environment->name) {
+      core_.environment = nullptr;
+      core_.environment_name.reset();
+    }
+  }
+  core_.edits = std::move(edits);
+  core_.nodes = std::move(nodes);
+  return {};
+}
+
+void SessionScene::edits_changed(const std::string& by) {
+  core_.changed();
+  core_.notify_others_latest<protocol::notifications::edits_changed>(by,
+                                                                     {.rev = core_.rev, .by = by});
 }
 
 Result<protocol::MaterialList> SessionScene::materials() const {

@@ -16,15 +16,25 @@ class SessionScene {
   explicit SessionScene(SessionCore& core) : core_(core) {}
 
   protocol::Result<protocol::SceneInfo> info() const;
-  void show(LoadedScene scene, const std::string& by);
+  /// @param edits a document to apply; null: the scene is shown as its file has it
+  /// @return an error where the document does not fit; the scene of before stays
+  protocol::Result<void> show(LoadedScene scene, const protocol::EditDocument* edits,
+                              const std::string& by);
   void unload(const std::string& by);
 
   protocol::Result<protocol::LightList> lights() const;
   protocol::Result<protocol::LightState> patch_light(const protocol::LightsPatch& request,
                                                      const std::string& by);
+  protocol::Result<protocol::LightState> add_light(const protocol::LightAdd& request,
+                                                   const std::string& by);
+  protocol::Result<protocol::LightList> remove_light(const protocol::LightName& request,
+                                                     const std::string& by);
   protocol::Result<protocol::MaterialList> materials() const;
   protocol::Result<protocol::MaterialState> patch_material(const protocol::MaterialsPatch& request,
                                                            const std::string& by);
+  protocol::Result<protocol::EditsState> edits() const;
+  /// All but the choice of an environment by name.
+  protocol::Result<void> apply_edits(const protocol::EditDocument& document, const std::string& by);
   /// What is in effect, without the environments of the catalogue.
   protocol::EnvironmentState environment() const;
   /// `environment` is the one called `name`; both empty: the scene's own.
@@ -33,6 +43,11 @@ class SessionScene {
                                          const std::string& by);
 
  private:
+  /// Takes the document's place for all that was changed before; `scene` is to be shown.
+  protocol::Result<void> adopt(const std::shared_ptr<const scene::Scene>& scene,
+                               const protocol::EditDocument& document, const std::string& by);
+  void edits_changed(const std::string& by);
+
   SessionCore& core_;
 };
 

@@ -247,6 +247,26 @@ class Camera(_Group):
         return self._call("camera.fit", _given({"nodes": nodes}))
 
 
+class Edits(_Group):
+    def get(self) -> Dict[str, Any]:
+        """Returns all that this session has changed in its scene as one document, for
+        edits.apply, scene.load and heliograph render --edits.
+
+        Returns: edits, rev, scene.
+        """
+        return self._call("edits.get", {})
+
+    def apply(self, *, edits: Dict[str, Any]) -> Dict[str, Any]:
+        """Puts the changes of a document in the place of all that this session has changed in
+        its scene. A document that does not fit the scene changes nothing.
+
+        edits: A document that edits.get returned.
+
+        Returns: edits, rev, scene.
+        """
+        return self._call("edits.apply", _given({"edits": edits}))
+
+
 class Environment(_Group):
     def list(self) -> Dict[str, Any]:
         """Lists the environments that the server has, and returns the current one.
@@ -402,6 +422,33 @@ class Lights(_Group):
         Returns: light, rev.
         """
         return self._call("lights.patch", _given({"light": light, "patch": patch}))
+
+    def add(
+            self,
+            *,
+            type: Literal["directional", "point", "spot", "rectangle", "disk"],
+            name: str = _UNSET,
+            patch: Dict[str, Any] = _UNSET) -> Dict[str, Any]:
+        """Adds a light to this session's scene.
+
+        type: Type of the light.
+        name: Its name, which no other light may have; absent: one is made. A removed light of
+            the file comes back by its name.
+        patch: Its members; absent ones suit the size of the scene, in whose middle it shines
+            from above.
+
+        Returns: light, rev.
+        """
+        return self._call("lights.add", _given({"type": type, "name": name, "patch": patch}))
+
+    def remove(self, *, light: str) -> Dict[str, Any]:
+        """Removes a light from this session's scene; lights.add brings back one of the file.
+
+        light: A name from lights.list.
+
+        Returns: lights, rev.
+        """
+        return self._call("lights.remove", _given({"light": light}))
 
 
 class Materials(_Group):
@@ -569,11 +616,18 @@ class Scene(_Group):
         """
         return self._call("scene.list", {})
 
-    def load(self, *, name: str, scene: str = _UNSET, variant: str = _UNSET) -> Dict[str, Any]:
+    def load(
+            self,
+            *,
+            name: str,
+            edits: Dict[str, Any] = _UNSET,
+            scene: str = _UNSET,
+            variant: str = _UNSET) -> Dict[str, Any]:
         """Loads a scene and shows it; scene.progress reports the progress. On failure the
         current scene stays.
 
         name: A name from scene.list.
+        edits: A document that edits.get returned, applied as by edits.apply.
         scene: The scene to load from a file with several: its name, or its index from 0.
             Absent: the file's default.
         variant: Material variant of the file to apply. Absent: the default materials.
@@ -582,7 +636,8 @@ class Scene(_Group):
             lights, material_names, materials, memory, meshes, name, nodes, scene, scenes,
             texels, textures, triangles, variant, variants, vertices, warnings.
         """
-        return self._call("scene.load", _given({"name": name, "scene": scene, "variant": variant}))
+        return self._call("scene.load", _given({
+            "name": name, "edits": edits, "scene": scene, "variant": variant}))
 
     def cancel(self) -> Dict[str, Any]:
         """Cancels the load that is in progress. The current scene stays.
@@ -872,6 +927,7 @@ class Methods:
         self.annotations = Annotations(call)
         self.bookmarks = Bookmarks(call)
         self.camera = Camera(call)
+        self.edits = Edits(call)
         self.environment = Environment(call)
         self.frame = Frame(call)
         self.job = Job(call)

@@ -9,7 +9,7 @@
 #include "cli/commands.hpp"
 #include "cli/compare/comparison_report.hpp"
 #include "cli/compare/image_source.hpp"
-#include "cli/render/output_file.hpp"
+#include "cli/render/output/output_file.hpp"
 
 namespace heliograph::cli {
 namespace {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "cli/render/render_edits.hpp"
 #include "cli/render/render_plan.hpp"
 #include "cli/render/render_task.hpp"
 #include "render/api/engine.hpp"
@@ -18,6 +19,8 @@ class CoverageRenderer {
   CoverageRenderer(render::Engine& engine, std::shared_ptr<const render::SceneResources> scene,
                    const RenderTask& task);
 
+  /// Changes of the scene; before the first measurement.
+  void apply(const RenderEdits& edits) { edits.apply(renderer_); }
   /// 0 to 1 for each pixel of the shot. @throws std::runtime_error, RenderCanceled
   std::vector<float> measure(const Shot& shot, const std::function<bool()>& canceled);
 

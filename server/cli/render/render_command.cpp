@@ -8,7 +8,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/log.hpp"
-#include "cli/render/output_file.hpp"
+#include "cli/render/output/output_file.hpp"
 #include "cli/render/render_scene.hpp"
 #include "cli/render/stopped_time.hpp"
 

@@ -15,6 +15,7 @@ constexpr const char* render_examples = R"text(Examples:
   heliograph render helmet.glb -o turn_%03d.png --turntable 36 --background transparent
   heliograph render helmet.glb -o turn.mp4 --turntable 72
   heliograph render helmet.glb -o front.png --orbit 0,20 --margin 0.1 --background blurred
+  heliograph render helmet.glb -o red.png --edits helmet_edits.json
   heliograph render helmet.glb -o - > helmet.png
   heliograph render --manifest jobs.jsonl -o "out/{scene}.webp" --resume --report report.json
   heliograph render pillars.glb -o svgf.png --preset svgf --set accumulation.blend_samples=4096
@@ -149,6 +150,11 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options) {
                    "Format of the files [by their extension; png for -]")
       ->check(one_of({"png", "jpg", "webp", "exr", "npy", "mp4", "webm", "animated_webp"}));
   add_view_options(*command, options);
+  command
+      ->add_option("--edits", options.edits,
+                   "Changes of lights, materials, visibility and environment to apply: the file "
+                   "that the page saves, or the document of edits.get")
+      ->type_name("FILE");
   command->add_option("--buffer", request.buffer, "Buffer to write")->capture_default_str();
   add_limit_options(*command, options.limits);
   command->add_flag("--timings", options.timings,

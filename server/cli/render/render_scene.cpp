@@ -12,8 +12,9 @@
 
 #include "cli/engine_options.hpp"
 #include "cli/render/coverage.hpp"
-#include "cli/render/output_file.hpp"
+#include "cli/render/output/output_file.hpp"
 #include "cli/render/quality.hpp"
+#include "cli/render/render_edits.hpp"
 #include "cli/render/render_plan.hpp"
 #include "cli/render/render_timings.hpp"
 #include "cli/render/stopped_time.hpp"
@@ -31,6 +32,7 @@ namespace heliograph::cli {
 struct Renderers {
   explicit Renderers(render::Engine& engine) : images(engine) {}
 
+  RenderEdits edits;
   render::Renderer images;
   std::optional<CoverageRenderer> coverage;  // where the background is put in
 };
@@ -55,7 +57,11 @@ std::shared_ptr<const scene::Environment> environment_of(RenderContext& context,
                                                          const RenderTask& task) {
   const fs::path scene = task.request.scene;
   fs::path file = task.request.environment;
-  if (file.empty()) {
+  const auto& edits = task.request.edits;
+  const bool edited = file.empty() && edits && edits->environment && edits->environment->name;
+  if (edited) {
+    file = edited_environment(*edits->environment->name, scene);
+  } else if (file.empty()) {
     const auto beside = session::environment_beside(scene, scene.parent_path());
     if (beside) file = *beside;
   }
@@ -75,9 +81,18 @@ void set_up_device(RenderContext& context) {
   }
 }
 
+/// The environment that the request names itself, or its edits.
+std::string named_environment(const protocol::RenderRequest& request) {
+  if (!request.environment.empty() || !request.edits || !request.edits->environment) {
+    return request.environment;
+  }
+  const auto& name = request.edits->environment->name;
+  return name ? "environment of the edits: " + *name : "";
+}
+
 bool shows(const SceneInUse& scene, const protocol::RenderRequest& request) {
   return scene.resources && scene.file == request.scene &&
-         scene.environment == request.environment && scene.variant == request.variant;
+         scene.environment == named_environment(request) && scene.variant == request.variant;
 }
 
 /// A file and its images: one, or all of a camera.
@@ -255,7 +270,7 @@ void load(RenderContext& context, const RenderTask& task, std::unique_ptr<scene:
   auto environment = environment_of(context, task);
   set_up_device(context);
   context.scene = {.file = task.request.scene,
-                   .environment = task.request.environment,
+                   .environment = named_environment(task.request),
                    .variant = task.request.variant,
                    .resources = context.engine->upload_and_free_pixels(std::move(scene),
                                                                        std::move(environment))};
@@ -267,11 +282,16 @@ std::unique_ptr<scene::Scene> read_scene(const RenderContext& context, const Ren
                          {.choice = {.scene = {}, .variant = task.request.variant}}));
 }
 
-void prepare(RenderContext& context, const RenderTask& task, render::Renderer& renderer,
+void prepare(RenderContext& context, const RenderTask& task, Renderers& renderers,
              const Shot& first) {
+  render::Renderer& renderer = renderers.images;
+  if (task.request.edits) {
+    renderers.edits = RenderEdits(render::scene_of(*context.scene.resources), *task.request.edits);
+  }
   const FrameSize size = frame_size(task.request);
   renderer.keep_buffers(reads_buffers(task));
   renderer.set_scene(context.scene.resources);
+  renderers.edits.apply(renderer);
   renderer.set_size(size.width, size.height);
   renderer.set_camera(first.camera);
   accept(renderer.set_settings(task.settings));
@@ -280,6 +300,7 @@ void prepare(RenderContext& context, const RenderTask& task, render::Renderer& r
     print_timings(context, task, renderer);
     // Start again without history, so that the file does not depend on --timings.
     renderer.set_scene(context.scene.resources);
+    renderers.edits.apply(renderer);
     accept(renderer.set_settings(task.settings));
   }
   renderer.set_frame_seconds(static_cast<float>(1.0 / task.request.fps));
@@ -307,9 +328,10 @@ std::shared_ptr<Renderers> take_renderers(RenderContext& context, const RenderTa
   if (fit && !context.options.timings) return renderers;
   renderers.reset();  // before the next one takes memory
   renderers = std::make_shared<Renderers>(*context.engine);
-  prepare(context, task, renderers->images, first);
+  prepare(context, task, *renderers, first);
   if (!task.background.is_rendered()) {
     renderers->coverage.emplace(*context.engine, scene.resources, task);
+    renderers->coverage->apply(renderers->edits);
   }
   scene.rendered = std::move(request);
   scene.format = task.format;

@@ -16,6 +16,7 @@
 
 #include "cli/engine_options.hpp"
 #include "cli/render/manifest.hpp"
+#include "cli/render/render_edits.hpp"
 #include "protocol/limits.hpp"
 #include "protocol/settings/presets.hpp"
 #include "protocol/settings/settings_json.hpp"
@@ -58,6 +59,10 @@ protocol::Settings settings_of(const protocol::RenderRequest& request,
       throw std::invalid_argument("preset " + request.preset + ": " + preset.error().message);
     }
     settings = with_patch(settings, preset->settings, "preset");
+  }
+  if (request.edits && request.edits->environment) {
+    settings.environment.rotation = request.edits->environment->rotation;
+    settings.environment.intensity = request.edits->environment->intensity;
   }
   if (request.settings) settings = with_patch(settings, *request.settings, "settings");
   if (request.reference) {
@@ -191,6 +196,7 @@ protocol::RenderRequest common_request(const RenderOptions& options) {
   if (!options.reference.empty()) {
     request.reference = protocol::enum_value<protocol::ReferenceScope>(options.reference);
   }
+  if (!options.edits.empty()) request.edits = read_edits(options.edits);
   if (!options.orbit.empty()) request.orbit = parse_orbit(options.orbit);
   // With --timings these are the frames to measure.
   if (options.timings) request.frames.reset();

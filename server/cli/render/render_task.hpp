@@ -7,7 +7,7 @@
 
 #include "cli/options.hpp"
 #include "cli/render/background.hpp"
-#include "cli/render/output_name.hpp"
+#include "cli/render/output/output_name.hpp"
 #include "protocol/messages/render_messages.hpp"
 #include "protocol/settings/settings.hpp"
 

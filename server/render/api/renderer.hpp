@@ -32,9 +32,9 @@ class Renderer {
   /// Null is the empty scene, which every renderer starts with.
   void set_scene(std::shared_ptr<const SceneResources> scene);
   /// Other lights, in the default pose, and other values of materials than those of the scene's
-  /// file, for this renderer alone: as many as the scene has, of the same kinds, with the same
-  /// textures and alpha. set_scene brings back the file's. Lights that only move keep the
-  /// histories.
+  /// file, for this renderer alone. Lights: those of the scene, of the same kinds, then any others,
+  /// which no clip moves. Materials: as many as the scene has, with the same textures and alpha.
+  /// set_scene brings back the file's. Lights that only move keep the histories.
   void set_lights(std::span<const shared::Light> lights);
   void set_materials(std::span<const shared::Material> materials);
   /// Another environment than the scene's own; null: its own again.

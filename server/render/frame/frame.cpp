@@ -149,7 +149,8 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   if (from) denoised = denoise(plan, in, gbuffer, *from, noisy);
 
   // What is left takes little time, unless it traces rays.
-  if ((in.scene.features & shared::scene_blends) == 0) plan.finish_frames_from_here();
+  if ((in.moving.features_without_emission() & shared::scene_blends) == 0)
+    plan.finish_frames_from_here();
   const gpu::ImageRef background = draw_skybox(plan, in, gbuffer);
   shade_ground(plan, in, gbuffer, ground, background);
   const Composed composed = compose(plan, in, gbuffer, noisy, denoised, background);

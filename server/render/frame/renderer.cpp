@@ -47,6 +47,8 @@ void Renderer::set_scene(std::shared_ptr<const SceneResources> scene) {
 
 void Renderer::set_lights(std::span<const shared::Light> lights) {
   const bool moves = only_move(state_->moving->lights(), lights);
+  // The plan refers to the table of lights, which another number of them replaces.
+  if (lights.size() != state_->moving->lights().size()) state_->compiled.reset();
   if (state_->moving->set_lights(lights)) {
     state_->discard_frame_plan();
   } else {

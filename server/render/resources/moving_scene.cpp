@@ -209,6 +209,7 @@ MovingScene::MovingScene(const gpu::Device& device, const tracing::RayTracer& tr
     lights_at_rest_.push_back(light.device);
   lights_ = lights_at_rest_;
   previous_lights_ = lights_;
+  features_ = resources_->features & ~shared::scene_emissive;
   if (!resources_->scene->clips.empty()) {
     moving_ = std::make_unique<Moving>(device, *resources_);
     own_lights_ = make_light_table(device, lights_);
@@ -280,8 +281,7 @@ void MovingScene::select(std::span<const std::uint32_t> instances) {
 }
 
 std::uint32_t MovingScene::features() const {
-  const std::uint32_t others = resources_->features & ~shared::scene_emissive;
-  return others | (emissive_.may_shine() ? shared::scene_emissive : 0u);
+  return features_ | (emissive_.may_shine() ? shared::scene_emissive : 0u);
 }
 
 bool MovingScene::lit_by_studio_alone() const {
@@ -305,9 +305,17 @@ const std::vector<VkDescriptorSet>& MovingScene::material_sets() const {
 }
 
 bool MovingScene::set_lights(std::span<const shared::Light> lights) {
+  constexpr std::uint32_t of_lights =
+      shared::scene_area_lights | shared::scene_many_lights | shared::scene_light_grid;
   lights_at_rest_.assign(lights.begin(), lights.end());
   lights_are_new_ = true;
-  if (own_lights_) return false;
+  const bool others = lights.size() != lights_.size();
+  if (own_lights_ && !others) return false;
+  if (others) {
+    lights_ = lights_at_rest_;
+    previous_lights_ = lights_;
+    features_ = (features_ & ~of_lights) | light_features(lights_);
+  }
   own_lights_ = make_light_table(device_, lights_);
   write_lights(own_lights_, lights_, resources_->scene->bounds);
   bind_tables();
@@ -414,7 +422,7 @@ bool MovingScene::move_lights(const scene::Pose& before) {
   const scene::Scene& scene = *resources_->scene;
   bool any = lights_are_new_;
   for (std::size_t i = 0; i < lights_.size(); ++i) {
-    const auto node = scene.lights[i].node;
+    const auto node = i < scene.lights.size() ? scene.lights[i].node : std::nullopt;
     const bool moves = node && before.worlds[*node] != pose_.worlds[*node];
     if (!moves && !lights_are_new_) continue;
     const bool carried = node && pose_.worlds[*node] != scene.nodes[*node].world;

@@ -42,8 +42,10 @@ class MovingScene {
 
   /// Emissive triangles as they are now; see tables() for how to read them.
   const EmissiveBuffers& emissive() const { return emissive_.buffers(); }
-  /// shared::scene_* of the scene with its changes.
+  /// shared::scene_* of the scene with its changes; without what shines, as passes go by that know
+  /// no emissive triangles.
   std::uint32_t features() const;
+  std::uint32_t features_without_emission() const { return features_; }
 
   const LitEnvironment& environment() const { return *environment_; }
   /// Whether no light of the scene's own or of a chosen environment is beside the studio's.
@@ -52,9 +54,10 @@ class MovingScene {
   /// For the rasteriser; the first call may make them. Not while a frame runs.
   const std::vector<VkDescriptorSet>& material_sets() const;
 
-  /// Other lights than the scene's, of the same number and kinds, where no clip moves them; from
-  /// the next advance() on. Never while a frame runs.
-  /// @return whether tables() changed: plans must be rebuilt
+  /// Other lights than the scene's: those of the scene, of the same kinds, where no clip moves
+  /// them, then any others; from the next advance() on. Never while a frame runs, nor while a plan
+  /// refers to lights of another number.
+  /// @return whether tables() or features() changed: plans must be rebuilt
   bool set_lights(std::span<const shared::Light> lights);
   /// Other values for the scene's materials, with the same textures, alpha and flags, which rays
   /// and draws go by. Never while a frame runs.
@@ -112,6 +115,7 @@ class MovingScene {
   std::unique_ptr<ChangedMaterials> changed_materials_;  // null: the scene's
   EmissiveLights emissive_;
   std::vector<shared::Light> lights_at_rest_;
+  std::uint32_t features_ = 0;
   gpu::Buffer own_lights_;  // empty as long as they are the scene's and rest
   bool lights_are_new_ = false;
   scene::Pose pose_;

@@ -253,18 +253,12 @@ void SceneResources::upload_tables(const gpu::Device& device, bool host_kernels)
   rest_tables.meshes = upload(device, "meshes", meshes_);
   rest_tables.instances = upload(device, "instances", instances_);
   rest_tables.materials = upload(device, "materials", scene->materials);
-  const bool areas = std::any_of(lights.begin(), lights.end(), [](const shared::Light& light) {
-    return light.type >= shared::light_rectangle;
-  });
   const auto& materials = scene->materials;
   const bool blends =
       std::any_of(materials.begin(), materials.end(), [](const shared::Material& material) {
         return (material.flags & shared::material_alpha_blend) != 0;
       });
-  features = (areas ? shared::scene_area_lights : 0u) |
-             (lights.size() > shared::uniform_lights ? shared::scene_many_lights : 0u) |
-             (needs_light_grid(lights) ? shared::scene_light_grid : 0u) |
-             (scene->deformations.empty() ? 0u : shared::scene_deforms) |
+  features = light_features(lights) | (scene->deformations.empty() ? 0u : shared::scene_deforms) |
              (blends ? shared::scene_blends : 0u) |
              (scene->layers.size() > 1 ? shared::scene_layers : 0u);
   layers = upload(device, "material layers",

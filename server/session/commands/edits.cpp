@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "session/commands/commands.hpp"
+#include "session/state/edited_parts.hpp"
 
 // Lights, materials and the environment of a session's scene.
 
@@ -55,6 +56,28 @@ void set_environment(SessionHost& host, const std::shared_ptr<Session>& session,
   }
 }
 
+/// Answers when the document's environment is there, if it names one.
+void apply_edits(SessionHost& host, const std::shared_ptr<Session>& session,
+                 const protocol::EditDocument& document, const std::string& by,
+                 protocol::Completion<protocol::EditsState> done) {
+  const auto& environment = document.environment;
+  if (!environment || !environment->name) {
+    const auto applied = session->scene().apply_edits(document, by);
+    if (!applied) return done(applied.error());
+    return done(session->scene().edits());
+  }
+  const auto known = host.environments().find(*environment->name);
+  if (!known) return done(below(known.error(), "edits.environment"));
+  if (const auto applied = session->scene().apply_edits(document, by); !applied) {
+    return done(applied.error());
+  }
+  host.environments().show(session, *environment->name, by,
+                           [session, done = std::move(done)](Result<void> outcome) {
+                             if (!outcome) return done(below(outcome.error(), "edits.environment"));
+                             done(session->scene().edits());
+                           });
+}
+
 }  // namespace
 
 void add_edit_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
@@ -66,6 +89,26 @@ void add_edit_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
       [](Session& session, const LightsPatch& request, const std::string& viewer) {
         return session.scene().patch_light(request, viewer);
       });
+  add_command<methods::lights_add>(
+      dispatcher, host,
+      [](Session& session, const protocol::LightAdd& request, const std::string& viewer) {
+        return session.scene().add_light(request, viewer);
+      });
+  add_command<methods::lights_remove>(
+      dispatcher, host,
+      [](Session& session, const protocol::LightName& request, const std::string& viewer) {
+        return session.scene().remove_light(request, viewer);
+      });
+  add_command<methods::edits_get>(
+      dispatcher, host,
+      [](Session& session, const Empty&, const std::string&) { return session.scene().edits(); });
+  dispatcher.add<methods::edits_apply>([&host](const protocol::EditsApply& request,
+                                               const protocol::CallContext& context,
+                                               protocol::Completion<protocol::EditsState> done) {
+    const auto session = host.sessions().session_of(context);
+    if (!session) return done(session.error());
+    apply_edits(host, *session, request.edits, context.viewer, std::move(done));
+  });
   add_command<methods::materials_list>(dispatcher, host,
                                        [](Session& session, const Empty&, const std::string&) {
                                          return session.scene().materials();

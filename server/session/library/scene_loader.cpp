@@ -113,6 +113,7 @@ void SceneLoader::load(std::shared_ptr<Session> session, const protocol::SceneLo
                .device = session->device()};
   std::vector<Waiter> replaced;
   std::optional<LoadedScene> cached;
+  std::optional<Result<protocol::SceneInfo>> shown;
   {
     const std::lock_guard lock(mutex_);
     if (stopping_) return done(stopped());
@@ -125,18 +126,18 @@ void SceneLoader::load(std::shared_ptr<Session> session, const protocol::SceneLo
       cache_.count_miss();
       job = jobs_.emplace_back(std::make_shared<Job>());
       job->key = std::move(key);
-      job->entry = *std::move(entry);
+      job->entry = *entry;
     }
+    Waiter waiter{std::move(session), by, done, entry->name, request.edits};
     if (cached) {
-      session->scene().show(*cached, by);
-      send_progress(*session, by, cached->name, "ready", 1.0f);
+      shown = show(waiter, *cached);
     } else {
-      job->waiters.push_back({std::move(session), by, done, job->entry.name});
+      job->waiters.push_back(std::move(waiter));
     }
   }
   wake_->notify();
   for (const Waiter& waiter : replaced) waiter.done(superseded());
-  if (cached) done(describe_scene(*cached));
+  if (shown) done(*std::move(shown));
 }
 
 protocol::SceneCancelled SceneLoader::cancel(const Session& session) {
@@ -341,23 +342,32 @@ LoadedScene SceneLoader::import_scene(Job& job, std::vector<scene::SourceFile>& 
   return loaded;
 }
 
+/// The answer to the request; its edits may not fit the scene.
+Result<protocol::SceneInfo> SceneLoader::show(const Waiter& waiter, const LoadedScene& loaded) {
+  const Result<void> shown =
+      waiter.session->scene().show(loaded, waiter.edits ? &*waiter.edits : nullptr, waiter.by);
+  send_progress(*waiter.session, waiter.by, loaded.name, shown ? "ready" : "failed",
+                shown ? 1.0f : 0.0f);
+  if (!shown) return shown.error();
+  return describe_scene(loaded);
+}
+
 /// Shows the scene in every session that waits for it, and answers the requests.
 void SceneLoader::finish(Job& job, const Result<LoadedScene>& outcome) {
   std::vector<Waiter> waiters;
+  std::vector<Result<protocol::SceneInfo>> answers;
   {
     const std::lock_guard lock(mutex_);
     waiters = std::exchange(job.waiters, {});
     std::erase_if(jobs_, [&](const auto& other) { return other.get() == &job; });
-    if (outcome) {
-      for (const Waiter& waiter : waiters) {
-        waiter.session->scene().show(*outcome, waiter.by);
-        send_progress(*waiter.session, waiter.by, job.entry.name, "ready", 1.0f);
-      }
+    for (const Waiter& waiter : waiters) {
+      answers.push_back(outcome ? show(waiter, *outcome) : outcome.error());
     }
   }
-  for (const Waiter& waiter : waiters) {
+  for (std::size_t i = 0; i < waiters.size(); ++i) {
+    const Waiter& waiter = waiters[i];
     if (outcome) {
-      waiter.done(describe_scene(*outcome));
+      waiter.done(std::move(answers[i]));
     } else {
       log_warning({.session = waiter.session->name()},
                   job.entry.name + " was not loaded: " + outcome.error().message);

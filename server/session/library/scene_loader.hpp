@@ -71,7 +71,8 @@ class SceneLoader {
     std::shared_ptr<Session> session;
     std::string by;
     Completion done;
-    std::string name;  // of the scene
+    std::string name;                             // of the scene
+    std::optional<protocol::EditDocument> edits;  // to show it with
   };
   struct Job {
     SceneKey key;
@@ -93,6 +94,8 @@ class SceneLoader {
   LoadedScene load_scene(Job& job);
   LoadedScene import_scene(Job& job, std::vector<scene::SourceFile>& sources);
   void report_device_loss(Job& job);
+  static protocol::Result<protocol::SceneInfo> show(const Waiter& waiter,
+                                                    const LoadedScene& loaded);
   void finish(Job& job, const protocol::Result<LoadedScene>& outcome);
   std::vector<Waiter> remove_waiters(const std::function<bool(const Session&)>& matches,
                                      const Job* except = nullptr);

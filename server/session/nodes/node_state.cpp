@@ -120,4 +120,12 @@ void NodeState::update_hidden() {
   hidden_instances_ = any ? std::move(hidden) : nullptr;
 }
 
+protocol::Result<void> apply_visibility(const protocol::EditDocument& document, NodeState& nodes) {
+  if (const auto known = nodes.check(document.hidden, "edits.hidden"); !known) return known;
+  if (const auto known = nodes.check(document.isolated, "edits.isolated"); !known) return known;
+  if (!document.hidden.empty()) nodes.set_visible(document.hidden, false);
+  nodes.isolate(document.isolated);
+  return {};
+}
+
 }  // namespace heliograph::session

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "protocol/messages/edit_messages.hpp"
 #include "protocol/messages/node_messages.hpp"
 #include "protocol/result.hpp"
 #include "scene/scene.hpp"
@@ -61,5 +62,9 @@ class NodeState {
   std::shared_ptr<const std::vector<bool>> hidden_instances_;
   std::shared_ptr<const std::vector<std::uint32_t>> selected_instances_;
 };
+
+/// Hides and isolates in `nodes`, where all are visible, what a document says; errors name its
+/// member.
+protocol::Result<void> apply_visibility(const protocol::EditDocument& document, NodeState& nodes);
 
 }  // namespace heliograph::session

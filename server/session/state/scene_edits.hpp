@@ -1,12 +1,10 @@
 #pragma once
 
 #include <memory>
-#include <string>
 #include <vector>
 
-#include "protocol/messages/scene_messages.hpp"
-#include "protocol/result.hpp"
-#include "scene/scene.hpp"
+#include "session/state/light_edits.hpp"
+#include "session/state/material_edits.hpp"
 
 namespace heliograph::session {
 
@@ -14,32 +12,45 @@ namespace heliograph::session {
 /// copied; geometry and textures stay shared.
 class SceneEdits {
  public:
-  using Lights = std::vector<shared::Light>;
-  using Materials = std::vector<shared::Material>;
+  using Lights = LightEdits::Lights;
+  using Materials = MaterialEdits::Materials;
 
   SceneEdits() = default;
-  explicit SceneEdits(std::shared_ptr<const scene::Scene> scene);
+  explicit SceneEdits(const std::shared_ptr<const scene::Scene>& scene)
+      : lights_(scene), materials_(scene) {}
 
-  const std::vector<protocol::LightInfo>& lights() const { return lights_; }
-  const std::vector<protocol::MaterialInfo>& materials() const { return materials_; }
+  std::vector<protocol::LightInfo> lights() const { return lights_.list(); }
+  const std::vector<protocol::MaterialInfo>& materials() const { return materials_.list(); }
 
-  protocol::Result<protocol::LightInfo> patch(const protocol::LightsPatch& request);
-  protocol::Result<protocol::MaterialInfo> patch(const protocol::MaterialsPatch& request);
+  protocol::Result<protocol::LightInfo> patch(const protocol::LightsPatch& request) {
+    return lights_.patch(request);
+  }
+  protocol::Result<protocol::LightInfo> add(const protocol::LightAdd& request) {
+    return lights_.add(request);
+  }
+  protocol::Result<void> remove_light(const std::string& name) { return lights_.remove(name); }
+  protocol::Result<protocol::MaterialInfo> patch(const protocol::MaterialsPatch& request) {
+    return materials_.patch(request);
+  }
 
-  /// In the order of the scene; null until a value differs from the file. A patch makes a new list:
-  /// references to the old one stay valid and unchanged.
-  const std::shared_ptr<const Lights>& device_lights() const { return device_lights_; }
-  const std::shared_ptr<const Materials>& device_materials() const { return device_materials_; }
+  /// The parts of a document that are about lights and materials.
+  void describe(protocol::EditDocument& document) const {
+    lights_.describe_edits(document);
+    materials_.describe_edits(document);
+  }
+  /// Of a scene that is as its file; errors name the entry of the document.
+  protocol::Result<void> apply(const protocol::EditDocument& document) {
+    if (const auto applied = lights_.apply(document); !applied) return applied;
+    return materials_.apply(document);
+  }
+
+  /// See LightEdits::device and MaterialEdits::device.
+  const std::shared_ptr<const Lights>& device_lights() const { return lights_.device(); }
+  const std::shared_ptr<const Materials>& device_materials() const { return materials_.device(); }
 
  private:
-  std::shared_ptr<const scene::Scene> scene_;
-  std::vector<protocol::LightInfo> lights_;
-  std::vector<protocol::MaterialInfo> materials_;
-  std::shared_ptr<const Lights> device_lights_;
-  std::shared_ptr<const Materials> device_materials_;
+  LightEdits lights_;
+  MaterialEdits materials_;
 };
-
-/// The materials of the file. Names are unique: a material without one gets its number.
-std::vector<protocol::MaterialInfo> describe_materials(const scene::Scene& scene);
 
 }  // namespace heliograph::session

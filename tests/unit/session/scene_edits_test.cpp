@@ -52,13 +52,13 @@ TEST(SceneEdits, MakesNamesOfLightsAndMaterialsUnique) {
 
 TEST(SceneEdits, DescribesALightByTheParametersOfItsType) {
   const SceneEdits edits(a_scene());
-  const protocol::LightInfo& sun = edits.lights()[0];
+  const protocol::LightInfo sun = edits.lights()[0];
   EXPECT_EQ(sun.type, LightType::directional);
   EXPECT_FLOAT_EQ(sun.intensity, 4.0f);
   EXPECT_EQ(sun.color, (Vec3{1.0f, 0.5f, 0.25f}));
   EXPECT_NEAR(sun.angular_diameter.value(), 2.0f, 1e-4f);
   EXPECT_FALSE(sun.position || sun.radius || sun.width);
-  const protocol::LightInfo& panel = edits.lights()[1];
+  const protocol::LightInfo panel = edits.lights()[1];
   EXPECT_EQ(panel.width, 2.0f);
   EXPECT_EQ(panel.height, 1.0f);
   EXPECT_FALSE(panel.angular_diameter);
@@ -150,6 +150,97 @@ TEST(SceneEdits, MaterialsKeepTheirAlphaAndTextures) {
   EXPECT_EQ(materials[1].roughness, 0.9f);
   EXPECT_EQ(materials[1].base_color_texture.texture, 0u);
   EXPECT_EQ(materials[0].base_color, scene->materials[0].base_color);
+}
+
+TEST(SceneEdits, ATemperatureGivesTheColorAndAColorEndsIt) {
+  SceneEdits edits(a_scene());
+  const auto warm = edits.patch({.light = "sun", .patch = {.temperature = {3000.0f}}});
+  ASSERT_TRUE(warm);
+  // Linear sRGB of a black body at 3000 K: 1, 0.462, 0.154 (from CIE 1931 chromaticity .4369,
+  // .4041).
+  EXPECT_NEAR(warm->color[0], 1.0f, 1e-3f);
+  EXPECT_NEAR(warm->color[1], 0.462f, 0.02f);
+  EXPECT_NEAR(warm->color[2], 0.154f, 0.02f);
+  const auto white = edits.patch({.light = "sun", .patch = {.temperature = {6504.0f}}});
+  for (const float component : white->color) EXPECT_NEAR(component, 1.0f, 0.06f);
+  const auto green = edits.patch({.light = "sun", .patch = {.color = {Vec3{0, 1, 0}}}});
+  EXPECT_FALSE(green->temperature);
+  ASSERT_TRUE(edits.patch({.light = "sun", .patch = {.temperature = {3000.0f}}}));
+  const auto file = edits.patch({.light = "sun", .patch = {.temperature = {{}, true}}});
+  EXPECT_EQ(file->color, (Vec3{1.0f, 0.5f, 0.25f}));
+  EXPECT_TRUE(file->changed.empty());
+}
+
+TEST(SceneEdits, AddedLightsFollowThoseOfTheFile) {
+  SceneEdits edits(a_scene());
+  const auto added = edits.add({.type = LightType::disk,
+                                .name = "panel",
+                                .patch = protocol::LightPatch{.position = {Vec3{1, 2, 3}}}});
+  ASSERT_TRUE(added);
+  EXPECT_TRUE(added->added);
+  ASSERT_EQ(edits.device_lights()->size(), 4u);
+  EXPECT_EQ(edits.device_lights()->back().position, glm::vec3(1, 2, 3));
+  EXPECT_EQ(edits.add({.type = LightType::point, .name = "sun"}).error().path, "name");
+  EXPECT_EQ(edits.add({.type = LightType::point})->name, "point light");
+  EXPECT_EQ(edits.add({.type = LightType::point})->name, "point light 2");
+  ASSERT_TRUE(edits.remove_light("panel"));
+  EXPECT_EQ(edits.device_lights()->size(), 5u);
+  EXPECT_EQ(edits.remove_light("panel").error().code, ErrorCode::not_found);
+}
+
+TEST(SceneEdits, ARemovedLightOfTheFileKeepsItsPlaceAndComesBack) {
+  SceneEdits edits(a_scene());
+  ASSERT_TRUE(edits.remove_light("sun"));
+  EXPECT_EQ(edits.lights().size(), 2u);
+  ASSERT_EQ(edits.device_lights()->size(), 3u);
+  EXPECT_EQ(edits.device_lights()->front().color, glm::vec3(0.0f));
+  EXPECT_FALSE(edits.patch({.light = "sun", .patch = {.intensity = {2.0f}}}));
+  EXPECT_EQ(edits.add({.type = LightType::point, .name = "sun"}).error().path, "type");
+  const auto back = edits.add({.type = LightType::directional,
+                               .name = "sun",
+                               .patch = protocol::LightPatch{.intensity = {2.0f}}});
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->changed, std::vector<std::string>{"intensity"});
+  EXPECT_EQ(edits.device_lights()->front().color, glm::vec3(2.0f, 1.0f, 0.5f));
+}
+
+TEST(SceneEdits, ADocumentLeadsToTheSameTablesInAnotherSession) {
+  SceneEdits edits(a_scene());
+  ASSERT_TRUE(edits.patch({.light = "sun 2", .patch = {.temperature = {2700.0f}}}));
+  ASSERT_TRUE(edits.remove_light("sun"));
+  ASSERT_TRUE(edits.add({.type = LightType::spot, .name = "key"}));
+  ASSERT_TRUE(
+      edits.patch({.light = "key", .patch = {.inner_cone = {10.0f}, .outer_cone = {20.0f}}}));
+  ASSERT_TRUE(edits.patch({.material = "paint", .patch = {.metallic = {1.0f}}}));
+  protocol::EditDocument document;
+  edits.describe(document);
+  SceneEdits others(a_scene());
+  ASSERT_TRUE(others.apply(document));
+  protocol::EditDocument again;
+  others.describe(again);
+  EXPECT_EQ(document, again);
+  const auto expect_near = [](const glm::vec3& a, const glm::vec3& b) {
+    EXPECT_NEAR(glm::distance(a, b), 0.0f, 1e-4f);
+  };
+  for (std::size_t i = 0; i < edits.device_lights()->size(); ++i) {
+    const shared::Light &one = (*edits.device_lights())[i], &other = (*others.device_lights())[i];
+    expect_near(one.color, other.color);
+    expect_near(one.position, other.position);
+    EXPECT_FLOAT_EQ(one.spot_scale, other.spot_scale);
+  }
+  EXPECT_EQ(others.device_materials()->front().metallic, 1.0f);
+}
+
+TEST(SceneEdits, ErrorsOfADocumentNameItsEntry) {
+  protocol::EditDocument document;
+  document.lights = {{"sun", {.intensity = {2.0f}}}, {"sun", {.width = {1.0f}}}};
+  EXPECT_EQ(SceneEdits(a_scene()).apply(document).error().path, "edits.lights[1].patch.width");
+  document.lights.clear();
+  document.removed_lights = {"moon"};
+  EXPECT_EQ(SceneEdits(a_scene()).apply(document).error().path, "edits.removed_lights[0]");
+  document.removed_lights.clear();
+  document.materials = {{"glass", {}}};
+  EXPECT_EQ(SceneEdits(a_scene()).apply(document).error().path, "edits.materials[0].material");
 }
 
 }  // namespace

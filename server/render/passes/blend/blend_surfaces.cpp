@@ -150,7 +150,7 @@ class BlendedSurfaces {
 
  private:
   gpu::PassBuilder pass(const std::string& name, const gpu::ShaderBinary& shader) {
-    return plan_.pass(name, in_.program(shader, in_.scene.features));
+    return plan_.pass(name, in_.program(shader, in_.moving.features_without_emission()));
   }
 
   /// Indirect light along `rays`.
@@ -167,7 +167,8 @@ class BlendedSurfaces {
         .constants([in = in_] { return cache_constants(in); })
         .dispatch_indirect(rays.count, ray_groups_offset)
         .host([in = in_](const kernels::BlendedGatherJob::Pass& pass) {
-          kernels::blended_gather({pass, in.constants, kernels::has_layers(in.scene.features),
+          kernels::blended_gather({pass, in.constants,
+                                   kernels::has_layers(in.moving.features_without_emission()),
                                    kernels::view_scene(in.scene, in.tables, in.moving),
                                    host_environment(in), in.lobe_tables()});
         });
@@ -190,8 +191,9 @@ class BlendedSurfaces {
         .dispatch_indirect(rays.count, ray_groups_offset)
         .host([in = in_](const kernels::BlendedSurfacesJob::Pass& pass) {
           const auto lights = frame_lights(in.tables.lights, in.constants);
-          kernels::blended_surfaces({pass, in.constants, lit_scene(in, lights),
-                                     (in.scene.features & shared::scene_deforms) != 0});
+          kernels::blended_surfaces(
+              {pass, in.constants, lit_scene(in, lights),
+               (in.moving.features_without_emission() & shared::scene_deforms) != 0});
         });
   }
 
@@ -220,7 +222,7 @@ BlendedImages declare_blended(gpu::FramePlan& plan) {
 
 kernels::LitScene lit_scene(const FrameInputs& in, std::span<const shared::Light> lights) {
   const bool separate_sun = in.settings.environment.separate_sun;
-  return {kernels::has_layers(in.scene.features),
+  return {kernels::has_layers(in.moving.features_without_emission()),
           kernels::view_scene(in.scene, in.tables, in.moving),
           *in.moving.environment().view(separate_sun).maps.host, lights, in.lobe_tables()};
 }

@@ -4,6 +4,7 @@
 #include "render/passes/compose/compose.hpp"
 #include "render/passes/frame_inputs.hpp"
 #include "render/passes/indirect/radiance_cache.hpp"
+#include "render/resources/moving_scene.hpp"
 
 namespace heliograph::render {
 
@@ -37,7 +38,7 @@ struct BlendedImages {
 BlendedImages declare_blended(gpu::FramePlan& plan);
 
 inline bool has_blends(const FrameInputs& in) {
-  return (in.scene.features & shared::scene_blends) != 0;
+  return (in.moving.features_without_emission() & shared::scene_blends) != 0;
 }
 
 /// What host kernels light surfaces with. `lights`, of this frame, outlive it.

@@ -12,7 +12,7 @@ Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbu
                  const NoisySignals& signals, const std::optional<DenoisedSignals>& denoised,
                  gpu::ImageRef background) {
   constexpr VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT;
-  const std::uint32_t features = in.scene.features;
+  const std::uint32_t features = in.moving.features_without_emission();
   Composed composed;
   composed.hdr = composed.noisy = plan.image(compose_buffers.hdr.name, format);
   if (denoised) composed.noisy = plan.image(compose_buffers.noisy.name, format);
@@ -50,11 +50,13 @@ Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbu
       })
       .dispatch(gpu::each_pixel())
       .host([in](const kernels::ComposeJob::Pass& pass) {
-        const FrameLights lights(in.tables.lights, in.constants, in.scene.features);
+        const FrameLights lights(in.tables.lights, in.constants,
+                                 in.moving.features_without_emission());
         const auto outside = lights.outside();
         const kernels::ReachingLights reaching(outside, in.constants);
         const bool separate_sun = in.settings.environment.separate_sun;
-        kernels::compose({pass, in.constants, kernels::has_layers(in.scene.features), reaching,
+        kernels::compose({pass, in.constants,
+                          kernels::has_layers(in.moving.features_without_emission()), reaching,
                           lights.view(), in.lobe_tables(),
                           *in.moving.environment().view(separate_sun).maps.host});
       });

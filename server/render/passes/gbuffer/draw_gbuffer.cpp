@@ -43,7 +43,7 @@ bool draws_gbuffer_on_host(const gpu::FramePlan& plan, const FrameInputs& in) {
 }
 
 GBuffer draw_gbuffer(gpu::FramePlan& plan, const FrameInputs& in, const BlendedImages* blended) {
-  GBuffer gbuffer = declare_gbuffer(plan, in.scene.features);
+  GBuffer gbuffer = declare_gbuffer(plan, in.moving.features_without_emission());
   const auto triangles = std::make_shared<kernels::ScreenTriangles>();
   plan.host("gbuffer.triangles", [in, triangles] {
     kernels::project_triangles(in.constants, kernels::view_scene(in.scene, in.tables, in.moving),
@@ -63,7 +63,8 @@ GBuffer draw_gbuffer(gpu::FramePlan& plan, const FrameInputs& in, const BlendedI
            .emissive = gbuffer.emissive,
            .depth_slope = gbuffer.depth_slope,
            .instance = gbuffer.instance,
-           .layers = given(kernels::has_layers(in.scene.features), gbuffer.layers),
+           .layers =
+               given(kernels::has_layers(in.moving.features_without_emission()), gbuffer.layers),
            .blended_radiance = given(blends, to.radiance),
            .blended_transmittance = given(blends, to.transmittance),
            .blended_motion = given(blends, to.motion),
@@ -74,8 +75,8 @@ GBuffer draw_gbuffer(gpu::FramePlan& plan, const FrameInputs& in, const BlendedI
         const auto lights = frame_lights(in.tables.lights, in.constants);
         const kernels::LitScene lit = lit_scene(in, lights);
         kernels::gbuffer_draw({pass, in.constants, lit.scene,
-                               (in.scene.features & shared::scene_deforms) != 0, *triangles,
-                               std::max(camera_rounds(in), least_layers), most_blended,
+                               (in.moving.features_without_emission() & shared::scene_deforms) != 0,
+                               *triangles, std::max(camera_rounds(in), least_layers), most_blended,
                                blends ? &lit : nullptr, plan});
       });
   return gbuffer;

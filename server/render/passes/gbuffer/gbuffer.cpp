@@ -21,7 +21,7 @@ class DrawRecorder {
   void draw(const Draw& draw) {
     if (draw.masked != masked_) {
       masked_ = draw.masked;
-      const auto& program = in_.programs.gbuffer(in_.scene.features, masked_);
+      const auto& program = in_.programs.gbuffer(in_.moving.features_without_emission(), masked_);
       vkCmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, program.pipeline());
     }
     if (draw.material != material_) {
@@ -96,11 +96,12 @@ GBuffer declare_gbuffer(gpu::FramePlan& plan, std::uint32_t features) {
 
 GBuffer rasterize_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
   in.moving.material_sets();  // before the first frame, which should not have to make them
-  const GBuffer gbuffer = declare_gbuffer(plan, in.scene.features);
+  const GBuffer gbuffer = declare_gbuffer(plan, in.moving.features_without_emission());
   constexpr std::array<float, 4> nothing{};
   // Beyond the octahedron, whose middle is a normal like any other.
   constexpr std::array<float, 4> no_normal{2.0f, 2.0f, 2.0f, 2.0f};
-  gpu::PassBuilder pass = plan.raster("gbuffer", in.programs.gbuffer(in.scene.features, false));
+  gpu::PassBuilder pass =
+      plan.raster("gbuffer", in.programs.gbuffer(in.moving.features_without_emission(), false));
   pass.color(gbuffer.normals, no_normal)
       .color(gbuffer.base_color, nothing)
       .color(gbuffer.surface, nothing)
@@ -108,7 +109,8 @@ GBuffer rasterize_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
       .color(gbuffer.emissive, nothing)
       .color(gbuffer.depth_slope, nothing)
       .color(gbuffer.instance, nothing);
-  if (in.scene.features & shared::scene_layers) pass.color(gbuffer.layers, nothing);
+  if (in.moving.features_without_emission() & shared::scene_layers)
+    pass.color(gbuffer.layers, nothing);
   pass.depth(plan.image("gbuffer.depth", VK_FORMAT_D32_SFLOAT), 0.0f)
       .constants(shared::DrawConstants{})  // every draw pushes its own
       .draw([in](VkCommandBuffer commands, VkPipelineLayout layout) {

@@ -26,7 +26,7 @@ struct Round {
 
 void store_hits(gpu::FramePlan& plan, const FrameInputs& in, const Round& round,
                 const GBuffer& gbuffer) {
-  const std::uint32_t features = in.scene.features;
+  const std::uint32_t features = in.moving.features_without_emission();
   const bool layered = (features & shared::scene_layers) != 0;
   const auto& shader = layered ? shaders::gbuffer_hits_layered : shaders::gbuffer_hits;
   plan.pass(round.name + ".hits", in.program(shader, features))
@@ -46,9 +46,9 @@ void store_hits(gpu::FramePlan& plan, const FrameInputs& in, const Round& round,
       .constants(kernels::GBufferHitsConstants{round.last})
       .dispatch_indirect(round.rays.count, ray_groups_offset)
       .host([in](const kernels::GBufferHitsJob::Pass& pass) {
-        kernels::gbuffer_hits({pass, in.constants,
-                               kernels::view_scene(in.scene, in.tables, in.moving),
-                               (in.scene.features & shared::scene_deforms) != 0});
+        kernels::gbuffer_hits(
+            {pass, in.constants, kernels::view_scene(in.scene, in.tables, in.moving),
+             (in.moving.features_without_emission() & shared::scene_deforms) != 0});
       });
 }
 
@@ -81,11 +81,11 @@ void camera_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string&
 }
 
 std::uint32_t camera_rounds(const FrameInputs& in) {
-  return (in.scene.features & shared::scene_blends) != 0 ? 2 + most_blended : 4;
+  return (in.moving.features_without_emission() & shared::scene_blends) != 0 ? 2 + most_blended : 4;
 }
 
 GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
-  GBuffer gbuffer = declare_gbuffer(plan, in.scene.features);
+  GBuffer gbuffer = declare_gbuffer(plan, in.moving.features_without_emission());
   const VkExtent2D extent = plan.extent();
   const kernels::Rows rows{0, static_cast<int>(extent.height)};
   const std::uint32_t capacity = camera_ray_capacity(extent.width, rows);

@@ -71,7 +71,8 @@ UpdateRays generate(gpu::FramePlan& plan, const FrameInputs& in, const RadianceC
       .constants([in] { return cache_constants(in); })
       .dispatch({shared::cache_cells, 1})
       .host([in](const kernels::RadianceCacheRaysJob::Pass& pass) {
-        const FrameLights lights(in.tables.lights, in.constants, in.scene.features);
+        const FrameLights lights(in.tables.lights, in.constants,
+                                 in.moving.features_without_emission());
         kernels::radiance_cache_rays(
             {pass, in.constants, lights.view(), in.lobe_tables(), samples_emissive(in)});
       });
@@ -86,7 +87,8 @@ void shade(gpu::FramePlan& plan, const FrameInputs& in, const RadianceCache& cac
       .constants([in] { return cache_constants(in); })
       .dispatch_indirect(rays.count, ray_groups_offset)
       .host([in](const kernels::RadianceCacheShadeJob::Pass& pass) {
-        kernels::radiance_cache_shade({pass, in.constants, kernels::has_layers(in.scene.features),
+        kernels::radiance_cache_shade({pass, in.constants,
+                                       kernels::has_layers(in.moving.features_without_emission()),
                                        kernels::view_scene(in.scene, in.tables, in.moving),
                                        host_environment(in), in.lobe_tables()});
       });

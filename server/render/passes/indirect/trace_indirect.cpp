@@ -6,6 +6,7 @@
 #include "render/passes/lights/emissive_points.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/sampling/plan_samples.hpp"
+#include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
@@ -49,7 +50,8 @@ void gather(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
       .constants([in] { return cache_constants(in); })
       .dispatch_indirect(rays.count, ray_groups_offset)
       .host([in](const kernels::IndirectShadeJob::Pass& pass) {
-        kernels::indirect_shade({pass, in.constants, kernels::has_layers(in.scene.features),
+        kernels::indirect_shade({pass, in.constants,
+                                 kernels::has_layers(in.moving.features_without_emission()),
                                  kernels::view_scene(in.scene, in.tables, in.moving),
                                  host_environment(in), in.lobe_tables()});
       });

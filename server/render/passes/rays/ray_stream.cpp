@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "render/kernels/common/parallel.hpp"
+#include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 #include "shaders/shared/ray_mask.h"
 
@@ -19,7 +20,7 @@ std::uint32_t strip_rays() {
 }  // namespace
 
 std::uint32_t frame_blending(const FrameInputs& in) {
-  if ((in.scene.features & shared::scene_blends) == 0) return 0;
+  if ((in.moving.features_without_emission() & shared::scene_blends) == 0) return 0;
   return shared::mixed_bits(in.constants.sample_index ^ shared::mixed_bits(in.constants.seed)) | 1u;
 }
 
@@ -55,7 +56,7 @@ std::vector<kernels::Rows> ray_strips(const gpu::FramePlan& plan, VkExtent2D ext
 
 void begin_rays(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
                 const tracing::RayStream& rays, Blending blending) {
-  plan.pass(name + ".begin", in.program(shaders::rays_begin, in.scene.features))
+  plan.pass(name + ".begin", in.program(shaders::rays_begin, in.moving.features_without_emission()))
       .bind<kernels::RaysBeginBindings>({.count = rays.count})
       .constants(kernels::RaysBeginConstants{blending == Blending::by_coverage})
       .dispatch({1, 1})

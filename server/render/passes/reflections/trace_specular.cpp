@@ -36,7 +36,7 @@ Target make_target(gpu::FramePlan& plan, bool half) {
 tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
                                  const GBuffer& gbuffer, const Target& target, kernels::Rows rows,
                                  std::optional<gpu::ImageRef> planned) {
-  const std::uint32_t features = in.scene.features;
+  const std::uint32_t features = in.moving.features_without_emission();
   const auto height = static_cast<std::uint32_t>(rows.bottom - rows.top);
   const auto rays = declare_rays(plan, "specular", target.size.of(plan.extent()).width * height,
                                  tracing::RayKind::reflection);
@@ -59,9 +59,9 @@ tracing::RayStream generate_rays(gpu::FramePlan& plan, const FrameInputs& in,
       .dispatch(target.size)
       .host([in, rows](const kernels::SpecularRaysJob::Pass& pass) {
         const bool separate_sun = in.settings.environment.separate_sun;
-        kernels::specular_rays({pass, in.constants, kernels::has_layers(in.scene.features),
-                                in.lobe_tables(),
-                                *in.moving.environment().view(separate_sun).maps.host, rows});
+        kernels::specular_rays(
+            {pass, in.constants, kernels::has_layers(in.moving.features_without_emission()),
+             in.lobe_tables(), *in.moving.environment().view(separate_sun).maps.host, rows});
       });
   return in.settings.specular.sort_rays ? sort_rays(plan, in, "specular", rays) : rays;
 }
@@ -91,7 +91,7 @@ struct Hits {
 /// Shades the hits; makes the shadow rays toward their lights.
 void shade(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer, const Hits& hits,
            const Target& target) {
-  const std::uint32_t features = in.scene.features;
+  const std::uint32_t features = in.moving.features_without_emission();
   begin_rays(plan, in, hits.name + ".shadows", hits.shadows);
   const auto& shader = hits.cache ? shaders::specular_shade_indirect : shaders::specular_shade;
   std::optional<gpu::BufferRef> keys, cells;
@@ -119,9 +119,11 @@ void shade(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer, 
       })
       .dispatch_indirect(hits.rays.count, ray_groups_offset)
       .host([in](const kernels::SpecularShadeJob::Pass& pass) {
-        const FrameLights lights(in.tables.lights, in.constants, in.scene.features);
+        const FrameLights lights(in.tables.lights, in.constants,
+                                 in.moving.features_without_emission());
         const bool separate_sun = in.settings.environment.separate_sun;
-        kernels::specular_shade({pass, in.constants, kernels::has_layers(in.scene.features),
+        kernels::specular_shade({pass, in.constants,
+                                 kernels::has_layers(in.moving.features_without_emission()),
                                  kernels::view_scene(in.scene, in.tables, in.moving),
                                  *in.moving.environment().view(separate_sun).maps.host,
                                  lights.view(), in.lobe_tables()});
@@ -157,7 +159,8 @@ void trace_and_shade(gpu::FramePlan& plan, const FrameInputs& in, const std::str
 gpu::ImageRef upsample(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                        const Target& half) {
   const auto radiance = plan.image(specular_buffers.radiance.name, four_floats);
-  plan.pass("specular.upsample", in.program(shaders::specular_upsample, in.scene.features))
+  plan.pass("specular.upsample",
+            in.program(shaders::specular_upsample, in.moving.features_without_emission()))
       .read(gbuffer.normals)
       .read(gbuffer.base_color)
       .read(gbuffer.surface)

@@ -5,6 +5,7 @@
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/sampling/plan_samples.hpp"
 #include "render/resources/lights/light_table.hpp"
+#include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
@@ -87,13 +88,15 @@ gpu::ImageRef trace_shadows(gpu::FramePlan& plan, const FrameInputs& in, const G
                                             .visibility = trace.visibility()})
         .constants(ray_constants(in, planned.has_value()))
         .host([in, rows](const kernels::ShadowRaysJob::Pass& job) {
-          const FrameLights lights(in.tables.lights, in.constants, in.scene.features);
-          kernels::shadows_rays({job, in.constants, kernels::has_layers(in.scene.features),
+          const FrameLights lights(in.tables.lights, in.constants,
+                                   in.moving.features_without_emission());
+          kernels::shadows_rays({job, in.constants,
+                                 kernels::has_layers(in.moving.features_without_emission()),
                                  lights.view(), in.lobe_tables(), rows});
         });
   };
-  return trace.trace(in.program(shaders::shadows_rays, in.scene.features), traces_shadows,
-                     generate);
+  return trace.trace(in.program(shaders::shadows_rays, in.moving.features_without_emission()),
+                     traces_shadows, generate);
 }
 
 gpu::ImageRef trace_ambient(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,

@@ -18,6 +18,14 @@ std::size_t first_grid_texel(std::size_t lights) {
 
 }  // namespace
 
+std::uint32_t light_features(std::span<const shared::Light> lights) {
+  const bool areas = std::ranges::any_of(
+      lights, [](const shared::Light& light) { return light.type >= shared::light_rectangle; });
+  return (areas ? shared::scene_area_lights : 0u) |
+         (lights.size() > shared::uniform_lights ? shared::scene_many_lights : 0u) |
+         (needs_light_grid(lights) ? shared::scene_light_grid : 0u);
+}
+
 gpu::Buffer make_light_table(const gpu::Device& device, std::span<const shared::Light> lights) {
   std::size_t texels = first_grid_texel(lights.size());
   if (needs_light_grid(lights)) texels += light_grid_texels(lights);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -11,6 +12,9 @@
 namespace heliograph::render {
 
 inline constexpr VkFormat light_texel_format = VK_FORMAT_R32G32B32A32_UINT;
+
+/// The bits of shared::scene_* that follow from the lights.
+std::uint32_t light_features(std::span<const shared::Light> lights);
 
 /// A table of any number of lights as shaders/lib/lighting/lights.glsl reads it: the first
 /// shared::uniform_lights from a uniform block, the others as texels of four words.

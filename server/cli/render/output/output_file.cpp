@@ -1,4 +1,4 @@
-#include "cli/render/output_file.hpp"
+#include "cli/render/output/output_file.hpp"
 
 #include <cerrno>
 #include <cstdio>

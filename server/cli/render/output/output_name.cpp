@@ -1,4 +1,4 @@
-#include "cli/render/output_name.hpp"
+#include "cli/render/output/output_name.hpp"
 
 #include <algorithm>
 #include <array>

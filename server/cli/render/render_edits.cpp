@@ -1,0 +1,65 @@
+#include "cli/render/render_edits.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+
+#include "protocol/json/codec.hpp"
+#include "session/library/scene_catalogue.hpp"
+#include "session/nodes/node_state.hpp"
+
+namespace heliograph::cli {
+namespace {
+
+constexpr std::uintmax_t most_bytes = 64u << 20;
+
+}  // namespace
+
+protocol::EditDocument read_edits(const std::string& file) {
+  std::ifstream in(file, std::ios::binary);
+  if (!in) throw std::runtime_error("--edits " + file + ": " + std::strerror(errno));
+  std::error_code unknown;
+  if (std::filesystem::file_size(file, unknown) > most_bytes && !unknown) {
+    throw std::invalid_argument("--edits " + file + ": must be at most 64 MiB");
+  }
+  const std::string text(std::istreambuf_iterator<char>(in), {});
+  const auto json = protocol::RawJson::parse(text);
+  if (!json)
+    throw std::invalid_argument("--edits " + file + ": is no JSON: " + json.error().message);
+  auto document = protocol::decode<protocol::EditDocument>(*json);
+  if (!document) throw std::invalid_argument("--edits " + file + ": " + document.error().message);
+  return *std::move(document);
+}
+
+std::filesystem::path edited_environment(const std::string& name,
+                                         const std::filesystem::path& scene) {
+  const std::filesystem::path folder = std::filesystem::absolute(scene).parent_path();
+  const auto files = session::SceneCatalogue({folder}).list_files({".hdr", ".exr"});
+  const auto found = std::ranges::find(files, name, &session::CatalogueEntry::name);
+  if (found != files.end()) return found->path;
+  if (name == "studio") return {};
+  throw std::runtime_error("edits.environment.name: there is no " + name +
+                           ".hdr or .exr beside the scene; --environment names a file");
+}
+
+RenderEdits::RenderEdits(const std::shared_ptr<const scene::Scene>& scene,
+                         const protocol::EditDocument& document)
+    : edits_(scene) {
+  session::NodeState nodes(scene);
+  for (const auto& fits : {edits_.apply(document), session::apply_visibility(document, nodes)}) {
+    if (!fits) throw std::runtime_error(fits.error().message);
+  }
+  if (nodes.hidden_instances()) hidden_ = *nodes.hidden_instances();
+}
+
+void RenderEdits::apply(render::Renderer& renderer) const {
+  if (edits_.device_lights()) renderer.set_lights(*edits_.device_lights());
+  if (edits_.device_materials()) renderer.set_materials(*edits_.device_materials());
+  if (!hidden_.empty()) renderer.set_hidden(hidden_);
+}
+
+}  // namespace heliograph::cli

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocol/messages/edit_messages.hpp"
+#include "render/api/renderer.hpp"
+#include "scene/scene.hpp"
+#include "session/state/scene_edits.hpp"
+
+namespace heliograph::cli {
+
+/// The document of --edits.
+/// @throws std::runtime_error, std::invalid_argument naming the option
+protocol::EditDocument read_edits(const std::string& file);
+
+/// The file of the environment that a document names, among those beside the scene and below its
+/// folder; empty: the studio.
+/// @throws std::runtime_error
+std::filesystem::path edited_environment(const std::string& name,
+                                         const std::filesystem::path& scene);
+
+/// What a document changes in a scene.
+class RenderEdits {
+ public:
+  RenderEdits() = default;
+  /// @throws std::runtime_error where the document does not fit the scene
+  RenderEdits(const std::shared_ptr<const scene::Scene>& scene,
+              const protocol::EditDocument& document);
+
+  /// After set_scene.
+  void apply(render::Renderer& renderer) const;
+
+ private:
+  session::SceneEdits edits_;
+  std::vector<bool> hidden_;  // by instance; empty: none
+};
+
+}  // namespace heliograph::cli

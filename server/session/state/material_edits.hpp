@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "protocol/messages/edit_messages.hpp"
+#include "protocol/result.hpp"
+#include "scene/scene.hpp"
+
+namespace heliograph::session {
+
+/// The materials of a scene with the changes of one session. A refused request changes nothing. Not
+/// thread safe.
+class MaterialEdits {
+ public:
+  using Materials = std::vector<shared::Material>;
+
+  MaterialEdits() = default;
+  explicit MaterialEdits(std::shared_ptr<const scene::Scene> scene);
+
+  const std::vector<protocol::MaterialInfo>& list() const { return materials_; }
+  protocol::Result<protocol::MaterialInfo> patch(const protocol::MaterialsPatch& request);
+
+  /// The part of a document that is about materials.
+  void describe_edits(protocol::EditDocument& document) const;
+  /// Of materials that are as in the file; errors name the entry of the document.
+  protocol::Result<void> apply(const protocol::EditDocument& document);
+
+  /// In the order of the scene; null until a value differs from the file. A patch makes a new list:
+  /// references to the old one stay valid and unchanged.
+  const std::shared_ptr<const Materials>& device() const { return device_; }
+
+ private:
+  std::shared_ptr<const scene::Scene> scene_;
+  std::vector<protocol::MaterialInfo> materials_;
+  std::shared_ptr<const Materials> device_;
+};
+
+/// The materials of the file. Names are unique: a material without one gets its number.
+std::vector<protocol::MaterialInfo> describe_materials(const scene::Scene& scene);
+
+}  // namespace heliograph::session
