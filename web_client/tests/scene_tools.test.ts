@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import type { Vector3 } from "heliograph/json.ts";
 import { PatchSender } from "../src/common/patch_sender.ts";
-import { displayColour, linearColour } from "../src/panel/scene/material_section.ts";
+import { displayColour, linearColour } from "../src/common/colour.ts";
 import { sunDirection, sunPosition } from "../src/panel/scene/sun_dial.ts";
 import { editsBetween } from "../src/session/scene_edits.ts";
 

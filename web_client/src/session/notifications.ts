@@ -58,6 +58,7 @@ export function receiveNotification(targets: Targets, method: string, params: un
     case "lights.changed":
     case "materials.changed":
     case "environment.changed":
+    case "edits.changed":
       targets.parts.notified(method, params);
       break;
     case "nodes.changed":

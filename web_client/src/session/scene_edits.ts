@@ -11,6 +11,8 @@ export type Edits = Record<string, JsonObject>;
 export interface Part {
   name: string;
   changed?: string[];
+  /** Whether it is none of the file's, which a link cannot bring back. */
+  added?: boolean;
 }
 
 /** Limits of what fits into a link. */
@@ -21,7 +23,7 @@ const maxNameLength = 256;
 /** The patches that lead from the file to these parts; undefined where the server does not tell. */
 export function editsOf(parts: readonly Part[]): Edits | undefined {
   if (!parts.some(({ changed }) => changed)) return undefined;
-  const edited = parts.filter(({ changed }) => changed && changed.length > 0);
+  const edited = parts.filter(({ changed, added }) => changed && changed.length > 0 && !added);
   return Object.fromEntries(
     edited.slice(0, maxEdits).map((part) => [part.name, pick(part, part.changed ?? [])]),
   );
@@ -30,7 +32,7 @@ export function editsOf(parts: readonly Part[]): Edits | undefined {
 /** The patches that lead from the parts' current state to the file with `edits`. */
 export function patchesTowards(parts: readonly Part[], edits: Edits): Edits {
   const patches: Edits = {};
-  for (const part of parts) {
+  for (const part of parts.filter(({ added }) => !added)) {
     const target = edits[part.name] ?? {};
     const patch: JsonObject = {};
     for (const member of part.changed ?? []) {

@@ -2,6 +2,7 @@
 
 import type { JsonObject } from "heliograph/json.ts";
 import type {
+  EditDocument,
   EnvironmentState,
   LightInfo,
   MaterialInfo,
@@ -13,6 +14,7 @@ import { ChannelClosed, type RpcPeer } from "heliograph/rpc.ts";
 import { humanise } from "heliograph/settings_schema.ts";
 import { PatchSender } from "../common/patch_sender.ts";
 import { Signal } from "../common/signal.ts";
+import { type NewLight, addRequest } from "./light_patches.ts";
 import { type Edits, type Part, editsOf } from "./scene_edits.ts";
 import type { SceneLoading } from "./scene_loading.ts";
 import type { ServerCapabilities } from "./server_capabilities.ts";
@@ -26,6 +28,8 @@ interface ScenePartsHost {
   capabilities: ServerCapabilities;
   history: UndoHistory;
   loading: SceneLoading;
+  /** Takes which nodes are hidden and isolated. */
+  shows(edits: Pick<EditDocument, "hidden" | "isolated">): void;
   report(error: unknown): void;
 }
 
@@ -59,6 +63,72 @@ export class SceneParts {
     this.remember(name, patch, this.materials, this.materialSender);
     this.materials.set(merged(this.materials.value, name, patch));
     this.materialSender.push(name, patch as unknown as JsonObject);
+  }
+
+  /** Adds a light; its name, or null where the server refuses it. */
+  async addLight(request: NewLight): Promise<string | null> {
+    const light = await this.sendLight(request);
+    if (!light) return null;
+    const again = addRequest(light);
+    this.host.history.add({
+      label: `add ${light.name}`,
+      key: `add ${light.name}`,
+      ofScene: true,
+      undo: () => void this.sendRemoval(light.name),
+      redo: () => void this.sendLight(again),
+    });
+    return light.name;
+  }
+
+  async removeLight(name: string): Promise<void> {
+    const light = this.lights.value.find((one) => one.name === name);
+    if (!light || !(await this.sendRemoval(name))) return;
+    this.host.history.add({
+      label: `remove ${name}`,
+      key: `remove ${name}`,
+      ofScene: true,
+      undo: () => void this.sendLight(addRequest(light)),
+      redo: () => void this.sendRemoval(name),
+    });
+  }
+
+  /** Everything that differs from the scene's file; null where the server refuses. */
+  async readEdits(): Promise<EditDocument | null> {
+    return (await this.attempt("edits.get", {}))?.edits ?? null;
+  }
+
+  /** Applies a document in place of all edits. Whether the server takes it. */
+  async applyEdits(edits: EditDocument): Promise<boolean> {
+    const before = await this.readEdits();
+    if (!before || !(await this.sendEdits(edits))) return false;
+    this.host.history.add({
+      label: "opened edits",
+      key: "opened edits",
+      ofScene: true,
+      undo: () => void this.sendEdits(before),
+      redo: () => void this.sendEdits(edits),
+    });
+    return true;
+  }
+
+  private async sendLight(request: NewLight): Promise<LightInfo | null> {
+    const answer = await this.attempt("lights.add", request);
+    if (answer) await this.read();
+    return answer?.light ?? null;
+  }
+
+  private async sendRemoval(light: string): Promise<boolean> {
+    const answer = await this.attempt("lights.remove", { light });
+    if (answer) this.lights.set(answer.lights);
+    return answer !== null;
+  }
+
+  private async sendEdits(edits: EditDocument): Promise<boolean> {
+    const answer = await this.attempt("edits.apply", { edits }, loadTimeoutMs);
+    if (!answer) return false;
+    await this.read();
+    this.host.shows(answer.edits);
+    return true;
   }
 
   /** Differences from the file, as far as the server tells. */
@@ -157,6 +227,7 @@ export class SceneParts {
     if (light && !this.lightSender.isBusy(light.name)) this.takeLight({ light });
     if (material && !this.materialSender.isBusy(material.name)) this.takeMaterial({ material });
     if (method === "environment.changed") void this.read();
+    if (method === "edits.changed") void this.readAll();
   }
 
   /** Takes the server's state, unless a newer patch is still to be sent. */
@@ -184,6 +255,13 @@ export class SceneParts {
     this.environment.set(environment);
   }
 
+  /** Another viewer has applied a document, or added or removed a light. */
+  private async readAll(): Promise<void> {
+    await this.read();
+    const edits = await this.readEdits();
+    if (edits) this.host.shows(edits);
+  }
+
   private async list<Name extends "lights.list" | "materials.list" | "environment.list">(
     method: Name,
   ): Promise<Methods[Name]["result"] | null> {
@@ -195,12 +273,13 @@ export class SceneParts {
     }
   }
 
-  private async attempt<Name extends "lights.patch" | "materials.patch">(
+  private async attempt<Name extends EditMethod>(
     method: Name,
     params: Methods[Name]["params"],
+    timeoutMs?: number,
   ): Promise<Methods[Name]["result"] | null> {
     try {
-      return await this.host.rpc.request(method, params);
+      return await this.host.rpc.request(method, params, timeoutMs);
     } catch (error) {
       this.host.report(error);
       if (!(error instanceof ChannelClosed)) await this.read();
@@ -209,6 +288,13 @@ export class SceneParts {
   }
 }
 
+type EditMethod =
+  | "lights.patch"
+  | "lights.add"
+  | "lights.remove"
+  | "materials.patch"
+  | "edits.get"
+  | "edits.apply";
 type LightChange = { light: Notifications["lights.changed"]["light"] };
 type MaterialChange = { material: Notifications["materials.changed"]["material"] };
 

@@ -162,6 +162,7 @@ export class Viewer {
       capabilities: this.capabilities,
       history: this.history,
       loading: this.loading,
+      shows: (edits) => this.nodes.notified("nodes.changed", edits),
       report: (error) => this.report(error),
     });
     this.nodes = new NodeStore(this);

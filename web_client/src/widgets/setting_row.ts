@@ -49,6 +49,7 @@ const unitSymbols: Record<string, string> = {
   pixels: "px",
   percent: "%",
   stops: "EV",
+  kelvin: "K",
   none: "",
   "1": "",
 };

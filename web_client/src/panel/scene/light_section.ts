@@ -1,20 +1,25 @@
-// Edits one light of the scene: on or off, intensity, size, direction.
+// The lights of the scene: edits one, adds and removes others.
 
-import type { LightInfo } from "heliograph/messages.ts";
-import type { SceneParts } from "../../session/scene_parts.ts";
+import type { LightInfo, LightPatch } from "heliograph/messages.ts";
+import { displayColour, linearColour } from "../../common/colour.ts";
+import { humanise } from "heliograph/settings_schema.ts";
+import type { Viewer } from "../../session/viewer.ts";
 import { button, element, setOptions } from "../../widgets/element.ts";
 import { field } from "../../widgets/field.ts";
 import { createSection } from "../../widgets/section.ts";
-import { createSliderRow } from "../../widgets/slider_row.ts";
+import { createLightRows } from "./light_rows.ts";
 import { createSunDial } from "./sun_dial.ts";
 
-export function createLightSection(parts: SceneParts): HTMLElement {
+const types: LightInfo["type"][] = ["point", "spot", "directional", "rectangle", "disk"];
+
+export function createLightSection(viewer: Viewer): HTMLElement {
+  const { parts } = viewer;
   const select = element("select", { name: "light", change: () => show() });
   const selected = (): LightInfo | undefined =>
     parts.lights.value.find(({ name }) => name === select.value) ?? parts.lights.value[0];
-  const patch = (change: Partial<LightInfo>): void => {
+  const patch = (change: LightPatch): void => {
     const light = selected();
-    if (light) parts.patchLight(light.name, change);
+    if (light) parts.patchLight(light.name, change as Partial<LightInfo>);
   };
   const enabled = element("input", {
     type: "checkbox",
@@ -28,70 +33,91 @@ export function createLightSection(parts: SceneParts): HTMLElement {
     const light = selected();
     if (light) parts.resetLight(light.name);
   });
+  const remove = button("Remove this light", "close", () => {
+    const light = selected();
+    if (light) void parts.removeLight(light.name);
+  });
   const dial = createSunDial("Direction of the sun", (direction) => patch({ direction }));
-  const diameter = createSliderRow(
-    {
-      label: "Angular diameter",
-      description: "Apparent size of the light: larger lights cast softer shadows.",
-      unit: "degrees",
-      minimum: 0,
-      maximum: 20,
-      scale: "cubic",
-    },
-    (angular_diameter) => patch({ angular_diameter }),
-  );
-  const radius = createSliderRow(
-    {
-      label: "Radius",
-      description: "Size of the light: larger lights cast softer shadows.",
-      unit: "metres",
-      minimum: 0,
-      maximum: 2,
-      scale: "cubic",
-    },
-    (value) => patch({ radius: value }),
-  );
-  const intensity = createSliderRow(
-    {
-      label: "Intensity",
-      description: "In lux for directional lights, in candela for point and spot lights.",
-      unit: "",
-      minimum: 0.001,
-      maximum: 200_000,
-      scale: "logarithmic",
-    },
-    (value) => patch({ intensity: value }),
-  );
-  const body = element(
+  const dialRow = element("div", { class: "dial-row" }, dial.node);
+  const colour = element("input", {
+    type: "color",
+    name: "light_colour",
+    "aria-label": "Colour of the light",
+    input: () => patch({ color: linearColour(colour.value) }),
+  });
+  const rows = createLightRows(selected, patch);
+  const editor = element(
     "div",
     { class: "section-body" },
-    field("Light", select, enabled, reset),
-    element("div", { class: "dial-row" }, dial.node),
-    intensity.node,
-    diameter.node,
-    radius.node,
+    field("Light", select, enabled, reset, remove),
+    dialRow,
+    field("Colour", colour),
+    ...rows.nodes,
   );
+  const added = createAdder(viewer, (name) => {
+    select.value = name;
+    show();
+  });
   const show = (): void => {
     const light = selected();
+    editor.hidden = !light;
     if (!light) return;
     select.value = light.name;
     enabled.checked = light.enabled;
-    dial.node.parentElement!.hidden = light.type !== "directional";
+    dialRow.hidden = light.type !== "directional";
     if (light.direction) dial.show(light.direction);
-    intensity.show(light.intensity);
-    diameter.node.hidden = light.angular_diameter === undefined;
-    diameter.show(light.angular_diameter ?? 0);
-    radius.node.hidden = light.radius === undefined;
-    radius.show(light.radius ?? 0);
+    colour.value = displayColour(light.color);
+    rows.show(light);
   };
-  const section = createSection({ id: "lights", title: "Lights", body, openByDefault: true });
-  parts.lights.watch((lights) => {
-    section.hidden = lights.length === 0;
-    setOptions(
-      select,
-      lights.map(({ name }) => ({ value: name, label: name })),
-    );
-    show();
+  const section = createSection({
+    id: "lights",
+    title: "Lights",
+    body: element("div", {}, editor, added),
+    openByDefault: true,
   });
+  const update = (): void => {
+    const adds = viewer.capabilities.has("lights.add");
+    added.hidden = remove.hidden = !adds;
+    section.hidden = parts.lights.value.length === 0 && !(adds && viewer.scene.value);
+    const names = parts.lights.value.map(({ name }) => ({ value: name, label: name }));
+    setOptions(select, names);
+    show();
+  };
+  parts.lights.watch(update);
+  viewer.scene.watch(update);
+  viewer.capabilities.methods.watch(update);
   return section;
+}
+
+/** Adds a light of a chosen type; `report` gets its name. */
+function createAdder(viewer: Viewer, report: (name: string) => void): HTMLElement {
+  const type = element(
+    "select",
+    { name: "light_type" },
+    ...types.map((value) => element("option", { value }, humanise(value))),
+  );
+  const add = async (): Promise<void> => {
+    const name = await viewer.parts.addLight({
+      type: type.value as LightInfo["type"],
+      patch: placeOf(type.value as LightInfo["type"], viewer),
+    });
+    if (name !== null) report(name);
+  };
+  return element(
+    "div",
+    { class: "section-body" },
+    field("New light", type, button("Add a light", "sun", () => void add())),
+  );
+}
+
+/** Between the camera and what it looks at, shining there. */
+function placeOf(type: LightInfo["type"], viewer: Viewer): LightPatch {
+  const camera = viewer.camera.value;
+  if (!camera) return {};
+  const toward = camera.target.map((value, axis) => value - (camera.eye[axis] as number));
+  const position = camera.eye.map((value, axis) => value + 0.4 * (toward[axis] as number));
+  const patch: LightPatch = {};
+  if (type !== "directional") patch.position = position as LightPatch["position"];
+  if (type !== "point") patch.direction = toward as LightPatch["direction"];
+  return patch;
 }

@@ -9,6 +9,7 @@ import { requiresControl } from "../../widgets/requires_control.ts";
 import { createNodeSection } from "../nodes/node_section.ts";
 import { mountSettings } from "../settings/settings_sections.ts";
 import { createCameraFields } from "./camera_fields.ts";
+import { createEditsSection } from "./edits_section.ts";
 import { createEnvironmentField } from "./environment_field.ts";
 import { createLightSection } from "./light_section.ts";
 import { createMaterialSection } from "./material_section.ts";
@@ -47,9 +48,10 @@ export function createSceneTab(
       ...createEnvironmentField(viewer, upload),
     ),
     createNodeSection(viewer, picker),
-    createLightSection(viewer.parts),
+    createLightSection(viewer),
     appearance,
     createMaterialSection(viewer.parts).node,
+    createEditsSection(viewer),
   );
 }
 
