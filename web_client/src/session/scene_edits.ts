@@ -2,6 +2,7 @@
 // for a link.
 
 import type { JsonObject, JsonValue } from "heliograph/json.ts";
+import type { LightAdd, LightInfo, LightPatch } from "heliograph/messages.ts";
 import { isObject, sameValue } from "heliograph/settings_tree.ts";
 
 /** One patch for each light or material that differs from the file. */
@@ -60,6 +61,33 @@ export function editsBetween(before: Edits, after: Edits): Edits {
     if (Object.keys(patch).length > 0) patches[name] = patch as JsonObject;
   }
   return patches;
+}
+
+const lightMembers: (keyof LightPatch & keyof LightInfo)[] = [
+  "enabled",
+  "color",
+  "temperature",
+  "intensity",
+  "position",
+  "direction",
+  "range",
+  "radius",
+  "angular_diameter",
+  "width",
+  "height",
+  "inner_cone",
+  "outer_cone",
+];
+
+/** What adds this light again: of one that the file has, the members that differ from it. */
+export function addRequest(light: LightInfo): LightAdd {
+  const differs = (member: string): boolean => light.added || light.changed.includes(member);
+  // A temperature gives the colour.
+  const patch = lightMembers
+    .filter((member) => light[member] !== undefined && differs(member))
+    .filter((member) => member !== "color" || light.temperature === undefined)
+    .map((member) => [member, light[member]]);
+  return { type: light.type, name: light.name, patch: Object.fromEntries(patch) as LightPatch };
 }
 
 /** The valid edits of an untrusted value. */

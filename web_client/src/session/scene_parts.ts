@@ -4,6 +4,7 @@ import type { JsonObject } from "heliograph/json.ts";
 import type {
   EditDocument,
   EnvironmentState,
+  LightAdd,
   LightInfo,
   MaterialInfo,
   Methods,
@@ -14,8 +15,7 @@ import { ChannelClosed, type RpcPeer } from "heliograph/rpc.ts";
 import { humanise } from "heliograph/settings_schema.ts";
 import { PatchSender } from "../common/patch_sender.ts";
 import { Signal } from "../common/signal.ts";
-import { type NewLight, addRequest } from "./light_patches.ts";
-import { type Edits, type Part, editsOf } from "./scene_edits.ts";
+import { type Edits, type Part, addRequest, editsOf } from "./scene_edits.ts";
 import type { SceneLoading } from "./scene_loading.ts";
 import type { ServerCapabilities } from "./server_capabilities.ts";
 import type { UndoHistory } from "./undo_history.ts";
@@ -66,7 +66,7 @@ export class SceneParts {
   }
 
   /** Adds a light; its name, or null where the server refuses it. */
-  async addLight(request: NewLight): Promise<string | null> {
+  async addLight(request: LightAdd): Promise<string | null> {
     const light = await this.sendLight(request);
     if (!light) return null;
     const again = addRequest(light);
@@ -111,7 +111,7 @@ export class SceneParts {
     return true;
   }
 
-  private async sendLight(request: NewLight): Promise<LightInfo | null> {
+  private async sendLight(request: LightAdd): Promise<LightInfo | null> {
     const answer = await this.attempt("lights.add", request);
     if (answer) await this.read();
     return answer?.light ?? null;
