@@ -16,12 +16,14 @@ Result<protocol::SceneInfo> SessionScene::info() const {
   return core_.scene_info;
 }
 
-Result<void> SessionScene::show(LoadedScene scene, const protocol::EditDocument* edits,
+void SessionScene::show(LoadedScene scene, const std::string& by) {
+  (void)show(std::move(scene), {}, by);  // a document without entries fits every scene
+}
+
+Result<void> SessionScene::show(LoadedScene scene, const protocol::EditDocument& edits,
                                 const std::string& by) {
   const std::lock_guard lock(core_.mutex);
-  if (const auto fits = adopt(scene.scene, edits ? *edits : protocol::EditDocument(), by); !fits) {
-    return fits;
-  }
+  if (const auto fits = adopt(scene.scene, edits, by); !fits) return fits;
   core_.scene = scene.scene;
   core_.scene_info = describe_scene(scene);
   core_.resources = std::move(scene.resources);

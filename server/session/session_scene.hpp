@@ -16,9 +16,11 @@ class SessionScene {
   explicit SessionScene(SessionCore& core) : core_(core) {}
 
   protocol::Result<protocol::SceneInfo> info() const;
-  /// @param edits a document to apply; null: the scene is shown as its file has it
+  /// As its file has it.
+  void show(LoadedScene scene, const std::string& by);
+  /// With the changes of the document.
   /// @return an error where the document does not fit; the scene of before stays
-  protocol::Result<void> show(LoadedScene scene, const protocol::EditDocument* edits,
+  protocol::Result<void> show(LoadedScene scene, const protocol::EditDocument& edits,
                               const std::string& by);
   void unload(const std::string& by);
 

@@ -344,8 +344,8 @@ LoadedScene SceneLoader::import_scene(Job& job, std::vector<scene::SourceFile>& 
 
 /// The answer to the request; its edits may not fit the scene.
 Result<protocol::SceneInfo> SceneLoader::show(const Waiter& waiter, const LoadedScene& loaded) {
-  const Result<void> shown =
-      waiter.session->scene().show(loaded, waiter.edits ? &*waiter.edits : nullptr, waiter.by);
+  const Result<void> shown = waiter.session->scene().show(
+      loaded, waiter.edits.value_or(protocol::EditDocument()), waiter.by);
   send_progress(*waiter.session, waiter.by, loaded.name, shown ? "ready" : "failed",
                 shown ? 1.0f : 0.0f);
   if (!shown) return shown.error();

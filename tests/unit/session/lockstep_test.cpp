@@ -24,7 +24,7 @@ LoadedScene scene_with_clip() {
 
 class LockstepTest : public testing::Test {
  protected:
-  LockstepTest() { (void)session_.scene().show(scene_with_clip(), nullptr, ""); }
+  LockstepTest() { session_.scene().show(scene_with_clip(), ""); }
 
   /// Requests frames; the answer is stored.
   Result<void> ask(std::uint32_t frames, double dt) {

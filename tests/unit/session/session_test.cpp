@@ -65,7 +65,7 @@ TEST_F(SessionTest, CommandsFailAsNotReadyWithoutAScene) {
 }
 
 TEST_F(SessionTest, ShowingASceneSelectsItsFirstCamera) {
-  ASSERT_TRUE(session_.scene().show(a_scene(), nullptr, ""));
+  session_.scene().show(a_scene(), "");
   const auto camera = session_.camera().get();
   ASSERT_TRUE(camera);
   EXPECT_EQ(camera->name, "near");
@@ -78,7 +78,7 @@ TEST_F(SessionTest, ASceneWithoutCamerasIsFitted) {
   auto bare = std::make_shared<scene::Scene>(*loaded.scene);
   bare->cameras.clear();
   loaded.scene = bare;
-  ASSERT_TRUE(session_.scene().show(std::move(loaded), nullptr, ""));
+  session_.scene().show(std::move(loaded), "");
   const auto camera = session_.camera().get();
   ASSERT_TRUE(camera);
   EXPECT_EQ(camera->name, std::nullopt);
@@ -87,7 +87,7 @@ TEST_F(SessionTest, ASceneWithoutCamerasIsFitted) {
 }
 
 TEST_F(SessionTest, CameraSetKeepsOmittedMembers) {
-  ASSERT_TRUE(session_.scene().show(a_scene(), nullptr, ""));
+  session_.scene().show(a_scene(), "");
   const auto moved = session_.camera().set({.eye = Vec3{5, 1, 2}, .vertical_fov = 60.0f}, "");
   ASSERT_TRUE(moved);
   EXPECT_EQ(moved->eye, (Vec3{5, 1, 2}));
@@ -97,7 +97,7 @@ TEST_F(SessionTest, CameraSetKeepsOmittedMembers) {
 }
 
 TEST_F(SessionTest, CameraSetAppliesMembersOnTopOfTheNamedCamera) {
-  ASSERT_TRUE(session_.scene().show(a_scene(), nullptr, ""));
+  session_.scene().show(a_scene(), "");
   EXPECT_EQ(session_.camera().set({.name = "far"}, "")->name, "far");
   const auto adjusted = session_.camera().set({.vertical_fov = 20.0f, .name = "far"}, "");
   EXPECT_EQ(adjusted->eye, (Vec3{0, 0, 30}));
@@ -108,7 +108,7 @@ TEST_F(SessionTest, CameraSetAppliesMembersOnTopOfTheNamedCamera) {
 }
 
 TEST_F(SessionTest, ARefusedCameraSetChangesNothing) {
-  ASSERT_TRUE(session_.scene().show(a_scene(), nullptr, ""));
+  session_.scene().show(a_scene(), "");
   const auto before = session_.camera().get();
   EXPECT_EQ(session_.camera().set({.eye = Vec3{2, 2, 2}, .target = Vec3{2, 2, 2}}, "").error().path,
             "target");
@@ -120,7 +120,7 @@ TEST_F(SessionTest, ARefusedCameraSetChangesNothing) {
 class FollowingSession : public SessionTest {
  protected:
   FollowingSession() {
-    ASSERT_TRUE(session_.scene().show(a_scene(), nullptr, ""));
+    session_.scene().show(a_scene(), "");
     SessionOptions options = SessionTest::options();
     options.name = "view";
     options.follows = "main";
@@ -177,7 +177,7 @@ TEST_F(FollowingSession, ItsSizeIsThatOfItsViewer) {
 }
 
 TEST_F(SessionTest, EveryChangeIncrementsTheRevision) {
-  ASSERT_TRUE(session_.scene().show(a_scene(), nullptr, ""));
+  session_.scene().show(a_scene(), "");
   const std::uint32_t first = session_.rev();
   ASSERT_TRUE(session_.camera().set({.eye = Vec3{1, 2, 3}}, ""));
   EXPECT_EQ(session_.rev(), first + 1);
@@ -199,7 +199,7 @@ TEST_F(SessionTest, AnInvalidSettingsPatchAppliesNothing) {
 }
 
 TEST_F(SessionTest, NotifiesAllViewersButTheOneThatMadeTheChange) {
-  ASSERT_TRUE(session_.scene().show(a_scene(), nullptr, ""));
+  session_.scene().show(a_scene(), "");
   const Joined author = join();
   const Joined other = join();
   ASSERT_TRUE(session_.camera().set({.eye = Vec3{1, 2, 3}}, author.id));
@@ -217,7 +217,7 @@ TEST_F(SessionTest, NotifiesAllViewersButTheOneThatMadeTheChange) {
 }
 
 TEST_F(SessionTest, EchoesInputsPerViewerUntilItLeaves) {
-  ASSERT_TRUE(session_.scene().show(a_scene(), nullptr, ""));
+  session_.scene().show(a_scene(), "");
   const Joined viewer = join();
   ASSERT_TRUE(session_.camera().set({.eye = Vec3{1, 2, 3}, .seq = 12}, viewer.id));
   const RenderState state = session_.render_state();
@@ -263,7 +263,7 @@ TEST_F(SessionTest, CallersWithoutAStreamCanOnlySetTheSize) {
 }
 
 TEST_F(SessionTest, StoppingAReferenceRestoresTheSettings) {
-  ASSERT_TRUE(session_.scene().show(a_scene(), nullptr, ""));
+  session_.scene().show(a_scene(), "");
   const auto patch = [&](json members) {
     return session_.patch_settings(protocol::RawJson(std::move(members)), "");
   };
@@ -284,7 +284,7 @@ TEST_F(SessionTest, StoppingAReferenceRestoresTheSettings) {
 }
 
 TEST_F(SessionTest, SettingsThatDisableAReferenceEndIt) {
-  ASSERT_TRUE(session_.scene().show(a_scene(), nullptr, ""));
+  session_.scene().show(a_scene(), "");
   ASSERT_TRUE(session_.reference().start({.samples = 9}, ""));
   ASSERT_TRUE(
       session_.patch_settings(protocol::RawJson(json{{"reference", {{"use", "off"}}},
@@ -298,7 +298,7 @@ TEST_F(SessionTest, SettingsThatDisableAReferenceEndIt) {
 }
 
 TEST_F(SessionTest, ValidatesAndLimitsCaptures) {
-  ASSERT_TRUE(session_.scene().show(a_scene(), nullptr, ""));
+  session_.scene().show(a_scene(), "");
   EXPECT_EQ(session_.captures().request_capture({.buffer = "depth"}).error().path, "buffer");
   EXPECT_TRUE(session_.captures().request_capture({.buffer = "gbuffer.normals"}));
   EXPECT_EQ(session_.captures().request_capture({.buffer = "gbuffer.normals"}).error().code,
