@@ -1,12 +1,12 @@
-// Runs every *.test.mjs, or with --long those of the folder long. Files run in two slots side by
-// side: while the page of one waits, the server of the other renders. Each slot has one browser, so
-// that files share neither its clipboard nor the time that it takes to start. Long ones measure, and
-// run alone. With --firefox they run in Firefox, one browser for each file. Exits with 77, which
-// ctest reports as "skipped", without a browser or server.
+// Runs every *.test.mjs here and in tools, or with --long those of the folder long. Files run in two
+// slots side by side: while the page of one waits, the server of the other renders. Each slot has one
+// browser, so that files share neither its clipboard nor the time that it takes to start. Long ones
+// measure, and run alone. With --firefox they run in Firefox, one browser for each file. Exits with
+// 77, which ctest reports as "skipped", without a browser or server.
 
 import { spawn } from "node:child_process";
 import { existsSync, readdirSync, statSync } from "node:fs";
-import { dirname, join } from "node:path";
+import { basename, dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { startBrowserServer } from "./harness/browser.mjs";
 import { chromiumPath, firefoxPath } from "./harness/environment.mjs";
@@ -42,11 +42,11 @@ if (!process.env.HELIOGRAPH_BINARY) skip("HELIOGRAPH_BINARY is not set");
 if (!process.env.HELIOGRAPH_SCENE_ROOT) skip("HELIOGRAPH_SCENE_ROOT is not set");
 
 const filters = process.argv.slice(2).filter((argument) => !argument.startsWith("--"));
-const folder = long ? join(here, "long") : here;
-const files = readdirSync(folder)
-  .filter((name) => name.endsWith(long ? ".mjs" : ".test.mjs"))
-  .filter((name) => filters.length === 0 || filters.some((part) => name.includes(part)))
-  .map((name) => join(folder, name))
+const folders = long ? [join(here, "long")] : [here, join(here, "tools")];
+const files = folders
+  .flatMap((folder) => readdirSync(folder).map((name) => join(folder, name)))
+  .filter((path) => path.endsWith(long ? ".mjs" : ".test.mjs"))
+  .filter((path) => filters.length === 0 || filters.some((part) => basename(path).includes(part)))
   // Large files first, so that no slot is left with one at the end.
   .sort((a, b) => statSync(b).size - statSync(a).size);
 let failed = files.length === 0;

@@ -26,8 +26,7 @@ class EditDocuments(ServerTestCase):
         model.add_light("sun", color=(1.0, 0.5, 0.25))
         model.add_light("fill", kind="point", intensity=20.0, translation=[0, 3, 0])
         model.save(os.path.join(cls.folder.name, "lit.glb"))
-        cls.server = Server("--scene", "mirror", "--set", "antialiasing.jitter=false",
-                            scenes=cls.folder.name)
+        cls.server = Server("--scene", "mirror", scenes=cls.folder.name)
 
     def reset(self):
         super().reset()
@@ -35,7 +34,8 @@ class EditDocuments(ServerTestCase):
         self.server.call("camera.fit")
         self.server.call("environment.set", {"name": None, "rotation": 0})
         self.server.call("settings.patch", {"patch": {
-            "environment": {"intensity": 0.1}, "accumulation": {"max_samples": 48}}})
+            "antialiasing": {"jitter": False}, "environment": {"intensity": 0.1},
+            "accumulation": {"max_samples": 48}}})
 
     def image(self):
         capture = self.server.call("frame.capture")
@@ -158,8 +158,7 @@ class EditDocuments(ServerTestCase):
         self.assertGreater(difference(images["edited"], images["plain"]), 3)
         self.server.call("stream.configure", SIZE)
         self.server.call("camera.set", {"name": "main"})
-        effect = difference(images["edited"], images["plain"])
-        self.assertLess(difference(self.image(), images["edited"]), 0.3 * effect)
+        self.assertLess(difference(self.image(), images["edited"]), 0.5)
 
     def test_the_command_line_names_what_is_wrong_in_a_document(self):
         path = os.path.join(self.folder.name, "wrong.json")
@@ -178,5 +177,6 @@ class EditDocuments(ServerTestCase):
         return subprocess.run(
             [os.environ["HELIOGRAPH_BINARY"], "render", os.path.join(self.folder.name, "lit.glb"),
              "-o", output, "--width", "96", "--height", "54", "--camera", "main",
-             "--set", "antialiasing.jitter=false", "--set", "accumulation.max_samples=48", *more],
+             "--set", "antialiasing.jitter=false", "--set", "accumulation.max_samples=48",
+             "--set", "environment.intensity=0.1", *more],
             check=check, capture_output=True, text=True, timeout=300)

@@ -2,9 +2,9 @@
 // with the pointer and with keys, over the view and in lists.
 
 import assert from "node:assert/strict";
-import { eventually, openTab, screenshot } from "./harness/browser.mjs";
-import { downloaded } from "./harness/downloads.mjs";
-import { Stage } from "./harness/stage.mjs";
+import { eventually, openTab, screenshot } from "../harness/browser.mjs";
+import { downloaded } from "../harness/downloads.mjs";
+import { Stage } from "../harness/stage.mjs";
 
 let start; // the camera that the scene begins with
 const stage = new Stage({

@@ -1,8 +1,8 @@
 // Scene tools: lights, materials, picking, pixel values.
 
 import assert from "node:assert/strict";
-import { doubleClick, eventually, openTab, screenshot } from "./harness/browser.mjs";
-import { Stage } from "./harness/stage.mjs";
+import { doubleClick, eventually, openTab, screenshot } from "../harness/browser.mjs";
+import { Stage } from "../harness/stage.mjs";
 
 const stage = new Stage({
   resolution: "half",

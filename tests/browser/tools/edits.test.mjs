@@ -1,0 +1,91 @@
+// Lights that the page adds, colours and removes; edits saved as a document and opened again.
+
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { join } from "node:path";
+import { seriousFindings } from "../harness/axe.mjs";
+import { eventually, openTab, screenshot } from "../harness/browser.mjs";
+import { outputFolder } from "../harness/environment.mjs";
+import { Stage } from "../harness/stage.mjs";
+
+const stage = new Stage({
+  view: { viewport: { width: 1000, height: 900 } },
+  prepare: async (page) => {
+    await openTab(page, "scene");
+    await page.locator('[data-section="edits"] summary').click();
+  },
+});
+const call = (...parameters) => stage.server.call(...parameters);
+const lights = async () => (await call("lights.list")).lights;
+const edits = async () => (await call("edits.get")).edits;
+const added = async () => (await lights()).find((light) => light.added);
+
+stage.test("keys add a light, give it a temperature and remove it; undo covers all", async () => {
+  const { page } = await stage.sharedViewer();
+  const section = page.locator("[data-section=lights]");
+  await section.locator("select[name=light_type]").selectOption("rectangle");
+  await section.getByRole("button", { name: "Add a light" }).focus();
+  await page.keyboard.press("Enter");
+  await eventually(added, "the light");
+  const light = await added();
+  await eventually(
+    async () => (await section.locator("select[name=light]").inputValue()) === light.name,
+    "it chosen",
+  );
+  const temperature = section.getByRole("textbox", { name: "Temperature" });
+  await temperature.fill("2700");
+  await temperature.press("Enter");
+  await eventually(async () => (await added()).temperature === 2700, "its temperature");
+  assert.ok((await added()).color[2] < 0.3, "a warm colour");
+  assert.notEqual(await section.locator("input[name=light_colour]").inputValue(), "#ffffff");
+  await screenshot(page, "added_light");
+  const undo = async () => {
+    await page.locator("#view").focus();
+    await page.keyboard.press("Control+z");
+  };
+  await undo();
+  await eventually(async () => (await added()).temperature === undefined, "another colour");
+  await section.getByRole("button", { name: "Remove this light" }).focus();
+  await page.keyboard.press("Enter");
+  await eventually(async () => !(await added()), "it removed");
+  await undo();
+  await eventually(added, "it there again");
+  await undo();
+  await eventually(async () => !(await added()), "it never added");
+});
+
+stage.test("edits are saved as a document, opened again, and undone as one", async () => {
+  const { page } = await stage.sharedViewer();
+  const before = await edits();
+  const [first] = await lights();
+  await call("lights.remove", { light: first.name });
+  await call("lights.add", { type: "disk", name: "panel" });
+  const document = await edits();
+  const download = page.waitForEvent("download");
+  await page.getByRole("button", { name: "Save edits" }).click();
+  const file = await download;
+  assert.equal(file.suggestedFilename(), "shadow_objects_edits.json");
+  const path = join(outputFolder, "edits.json");
+  await file.saveAs(path);
+  assert.deepEqual(JSON.parse(readFileSync(path, "utf8")), document);
+  await call("edits.apply", { edits: before });
+  await page.locator("input[name=edits_file]").setInputFiles(path);
+  await eventually(async () => (await lights()).some(({ name }) => name === "panel"), "opened");
+  await page.locator('[data-section="edits"] [role=status]', { hasText: "is applied" }).waitFor();
+  assert.deepEqual(await edits(), document);
+  await page.locator("#view").focus();
+  await page.keyboard.press("Control+z");
+  await eventually(async () => (await lights())[0].name === first.name, "undone");
+  assert.deepEqual(await edits(), before);
+});
+
+for (const colorScheme of ["dark", "light"]) {
+  stage.test(`lights and edits are accessible in the ${colorScheme} theme`, async () => {
+    const { page } = await stage.watch({ colorScheme });
+    await openTab(page, "scene");
+    await page.locator('[data-section="edits"] summary').click();
+    await page.locator('[data-section="edits"]').scrollIntoViewIfNeeded();
+    assert.deepEqual(await seriousFindings(page), []);
+    await screenshot(page, `edits_${colorScheme}`);
+  });
+}
