@@ -23,6 +23,7 @@ class MeanFilter {
   static constexpr int window = 3;  // pixels on either side that are averaged
   static constexpr int patch_reach = 1;
   static constexpr int reach = window + patch_reach;
+  static constexpr int surroundings = 4;  // pixels on either side whose variance is averaged
   // Columns whose channels and sums fit into the first cache together.
   static constexpr int columns = 64;
   static constexpr float least_noise = 1e-9f;
@@ -38,7 +39,7 @@ class MeanFilter {
     const BandScratch pixels(channel_count, width_, first, last, reach);
     const BandScratch sums(sum_count, width_, first, last, 0);
     const BandScratch apart(1, width_, first, last, patch_reach);
-    for (int y = first - reach; y < last + reach; ++y) prepare(pixels, y);
+    prepare(pixels, first, last);
     for (int y = first; y < last; ++y) {
       for (int sum = 0; sum < sum_count; ++sum) std::fill_n(sums.row(sum, y), width_, 0.0f);
     }
@@ -52,7 +53,7 @@ class MeanFilter {
         for (int y = first; y < last; ++y) add(pixels, apart, sums, across, y, down, left, right);
       }
     }
-    for (int y = first; y < last; ++y) finish(sums, y);
+    for (int y = first; y < last; ++y) finish(pixels, sums, y);
   }
 
  private:
@@ -97,8 +98,28 @@ class MeanFilter {
     return set(factor) / hn::MulAdd(frame + mean, set(0.5f * factor), set(1.0f));
   }
 
-  HWY_INLINE void prepare(const BandScratch& pixels, int y) const {
-    const int from = std::clamp(y, 0, static_cast<int>(job_.constants.shown.y) - 1);
+  HWY_INLINE int clamped_row(int y) const {
+    return std::clamp(y, 0, static_cast<int>(job_.constants.shown.y) - 1);
+  }
+
+  HWY_INLINE void prepare(const BandScratch& pixels, int first, int last) const {
+    const BandScratch variances(2, width_, first, last, reach + surroundings);
+    for (int y = first - reach - surroundings; y < last + reach + surroundings; ++y) {
+      const bool inside = y >= first - reach && y < last + reach;
+      prepare_row(inside ? &pixels : nullptr, variances, y);
+    }
+    for (int y = first - reach; y < last + reach; ++y) {
+      raise_variances(variances, pixels.row(variance, y), clamped_row(y));
+      for (int channel = 0; channel < channel_count; ++channel) pixels.extend(channel, y);
+    }
+  }
+
+  /// Of `variances`: the first channel, and in the second its sums over the columns of the
+  /// surroundings.
+  HWY_INLINE void prepare_row(const BandScratch* pixels, const BandScratch& variances,
+                              int y) const {
+    const int from = clamped_row(y);
+    float* const noises = variances.row(0, y);
     each_block(0, width_, [&](int x) HWY_ATTR {
       const Quad<V> frame = load(job_.radiance, x, from), mean = load(job_.mean, x, from);
       const V shown = luminance(Triple<V>{frame.x, frame.y, frame.z});
@@ -109,17 +130,37 @@ class MeanFilter {
       const V noise = mean.w * set(job_.constants.variance_scale) * unit * unit;
       // A number that is none must not spread.
       const auto good = hn::Not(hn::Or(is_bad(apart), is_bad(noise)));
+      hn::StoreU(hn::IfThenElseZero(good, noise), d_, noises + x);
+      if (!pixels) return;
       const auto put = [&](int channel, V value) HWY_ATTR {
-        hn::StoreU(hn::IfThenElseZero(good, value), d_, pixels.row(channel, y) + x);
+        hn::StoreU(hn::IfThenElseZero(good, value), d_, pixels->row(channel, y) + x);
       };
       put(red, apart.x);
       put(green, apart.y);
       put(blue, apart.z);
       put(difference, luminance(apart));
-      put(seen, shown * unit);
+      put(seen, shown * unit_of(shown, shown));
       put(variance, noise);
     });
-    for (int channel = 0; channel < channel_count; ++channel) pixels.extend(channel, y);
+    variances.extend(0, y);
+    each_block(0, width_, [&](int x) HWY_ATTR {
+      V sum = hn::Zero(d_);
+      for (int i = -surroundings; i <= surroundings; ++i) sum = sum + hn::LoadU(d_, noises + x + i);
+      hn::StoreU(sum, d_, variances.row(1, y) + x);
+    });
+  }
+
+  /// Variances of a row are no less than the share of its surroundings, those of row `y`.
+  HWY_INLINE void raise_variances(const BandScratch& variances, float* own, int y) const {
+    constexpr float count = (2 * surroundings + 1) * (2 * surroundings + 1);
+    each_block(0, width_, [&](int x) HWY_ATTR {
+      V sum = hn::Zero(d_);
+      for (int i = -surroundings; i <= surroundings; ++i) {
+        sum = sum + hn::LoadU(d_, variances.row(1, y + i) + x);
+      }
+      const V prior = sum * set(job_.constants.prior_share / count);
+      hn::StoreU(hn::Max(hn::LoadU(d_, own + x), prior), d_, own + x);
+    });
   }
 
   /// apart() of the shader, of row `y` and what lies `across` in row `other`.
@@ -180,7 +221,7 @@ class MeanFilter {
     return hn::Lt(hn::Iota(d_, static_cast<float>(x)), set(static_cast<float>(end)));
   }
 
-  HWY_INLINE void finish(const BandScratch& sums, int y) const {
+  HWY_INLINE void finish(const BandScratch& pixels, const BandScratch& sums, int y) const {
     each_block(0, width_, [&](int x) HWY_ATTR {
       const Quad<V> frame = load(job_.radiance, x, y), mean = load(job_.mean, x, y);
       const Triple<V> shown{frame.x, frame.y, frame.z};
@@ -191,8 +232,9 @@ class MeanFilter {
                                hn::MulAdd(sum(green), scale, shown.y),
                                hn::MulAdd(sum(blue), scale, shown.z)};
       const V share = sum(squares) / (weight * weight);
-      const V noise = mean.w * set(job_.constants.variance_scale) * set(job_.constants.noise_scale);
-      keep(shown, filtered, noise * share, x, y);
+      const V noise = hn::Max(hn::LoadU(d_, pixels.row(variance, y) + x) / (unit * unit),
+                              mean.w * set(job_.constants.variance_scale));
+      keep(shown, filtered, noise * set(job_.constants.noise_scale) * share, x, y);
     });
   }
 

@@ -17,6 +17,7 @@ struct FilterMeanConstants {
   glm::uvec2 shown;      // size of all images, pixels
   float variance_scale;  // of one sample's variance to the mean's
   float noise_scale;     // of the filtered mean's variance, as its weights tell it; 0: only a copy
+  float prior_share;     // of the surroundings' variance, which a pixel's is at least
 };
 using FilterMeanJob = gpu::HostPass<FilterMeanBindings, FilterMeanConstants>;
 

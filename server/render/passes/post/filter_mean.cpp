@@ -19,12 +19,17 @@ constexpr float few_filtered_samples = 8.0f;
 /// single frame: similarity must not fall. Found at 640x360 in the atrium and the breakfast room.
 constexpr float few_traced_samples = 4.0f;
 
+/// As many samples the variance of a pixel's surroundings is worth beside its own. With two samples
+/// alike, a pixel would else seem free of noise: FilterMean.PixelsOfLikeSamplesAreNotFreeOfNoise.
+constexpr float prior_samples = 2.0f;
+
 kernels::FilterMeanConstants filter_constants(const FrameInputs& in) {
   const std::uint32_t samples = samples_of_mean(in);
-  kernels::FilterMeanConstants constants{size_of(in.shown), 0.0f, 0.0f};
+  kernels::FilterMeanConstants constants{size_of(in.shown), 0.0f, 0.0f, 0.0f};
   if (samples < 2) return constants;
   const float fewer = 1.0f / static_cast<float>(samples - 1);
   constants.variance_scale = fewer * (1.0f + few_samples * fewer);
+  constants.prior_share = prior_samples / (static_cast<float>(samples - 1) + prior_samples);
   if (in.settings.accumulation.filter && weighs_by_noise(in)) {
     constants.noise_scale = 1.0f + few_filtered_samples * fewer;
     if (traces_reference(in)) constants.noise_scale *= few_traced_samples;
