@@ -75,8 +75,7 @@ stage.test("the view follows the pointer before the server has rendered", async 
 });
 
 stage.test("so it does while H.264 is streamed", async (t) => {
-  const context = await stage.context();
-  await context.addInitScript(() => localStorage.setItem("heliograph.codec", "h264"));
+  const context = await stage.context({ stored: { codec: "h264" } });
   const { page } = await watchStepped({ context });
   if (!(await seen(page)).drawn[h264]) return t.skip("server or browser has no H.264");
   const { still, followed } = await dragged(page, "reprojected_video");

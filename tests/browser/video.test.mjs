@@ -13,9 +13,8 @@ const stage = new Stage({
 
 /** A page that requests H.264; null, with the test skipped, where it is not supported. */
 async function watchVideo(t, prelude = "") {
-  const context = await stage.context();
+  const context = await stage.context({ stored: { codec: "h264" } });
   if (prelude) await prepareWorker(context, prelude);
-  await context.addInitScript(() => localStorage.setItem("heliograph.codec", "h264"));
   const viewer = await stage.watch({ context });
   if ((await viewer.page.locator("select[name=codec] option").count()) > 1) return viewer;
   t.skip("server or browser has no H.264");

@@ -60,24 +60,23 @@ export class Stage {
 
   /**
    * A browser context that is closed after the test. The hint of a first visit, which covers a part
-   * of the view, is shown with `firstVisit` only.
+   * of the view, is shown with `firstVisit` only. `stored` are preferences of the page.
    */
-  async context({ firstVisit = false, resolution = this.resolution, ...options } = {}) {
+  async context({ firstVisit = false, resolution = this.resolution, stored, ...options } = {}) {
     const context = await browser.newContext({
       viewport: { width: 960, height: 540 },
       colorScheme: "dark",
       ...this.view,
       ...options,
     });
-    await context.addInitScript(
-      ({ hintSeen, size }) => {
-        // Without storage: about:blank, and what Firefox loads before the page.
-        if (location.protocol === "about:" || window.origin === "null") return;
-        if (hintSeen) localStorage.setItem("heliograph.hint_seen", "1");
-        localStorage.setItem("heliograph.resolution", size);
-      },
-      { hintSeen: !firstVisit, size: resolution },
-    );
+    const preferences = { ...(firstVisit ? {} : { hint_seen: "1" }), resolution, ...stored };
+    await context.addInitScript((values) => {
+      // Without storage: about:blank, and what Firefox loads before the page.
+      if (location.protocol === "about:" || window.origin === "null") return;
+      for (const [name, value] of Object.entries(values)) {
+        localStorage.setItem(`heliograph.${name}`, value);
+      }
+    }, preferences);
     this.contexts.add(context);
     return context;
   }

@@ -43,11 +43,7 @@ async function orbit(page, name) {
 stage.test("orbiting shows more images than the server renders", async () => {
   const results = {};
   for (const reprojection of [false, true]) {
-    const context = await stage.context();
-    await context.addInitScript(
-      (flag) => localStorage.setItem("heliograph.reprojection", flag),
-      reprojection ? "1" : "0",
-    );
+    const context = await stage.context({ stored: { reprojection: reprojection ? "1" : "0" } });
     const { page } = await stage.watch({ context });
     await openTab(page, "timing");
     await settle(page, stage.server);

@@ -75,11 +75,7 @@ stage.test("the page loads, connects and shows its first frame", async () => {
 
 /** Streams a clip to a page of 1280 x 720 and measures it. */
 async function stream(resolution) {
-  const context = await stage.context();
-  await context.addInitScript(
-    (choice) => localStorage.setItem("heliograph.resolution", choice),
-    resolution,
-  );
+  const context = await stage.context({ resolution });
   const { page } = await stage.watch({ context });
   const session = await context.newCDPSession(page);
   // The thread's own clock, which is independent of other processes.
