@@ -1,4 +1,3 @@
-#include <malloc.h>
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include "cli/engine_options.hpp"
 #include "cli/job_options.hpp"
 #include "cli/log.hpp"
+#include "cli/malloc_thresholds.hpp"
 #include "cli/scene_roots.hpp"
 #include "net/server.hpp"
 #include "render/api/devices.hpp"
@@ -55,22 +55,6 @@ void set_default_size(session::SessionOptions& session, const render::Engines& e
   if (!has_processor(engines)) return;
   session.width = 640;
   session.height = 360;
-}
-
-/// On a CPU device, images are heap blocks of this process. By default glibc raises its mmap
-/// threshold up to 32 MB, so that images come from the arenas, where freed memory stays. With a
-/// fixed threshold they are mapped, and returned to the system when freed: after a dozen sessions
-/// the process takes 240 MB instead of 460. Free memory at an arena's end is kept up to a size, or
-/// every frame would allocate its working memory again. With a GPU only encoded frames would be
-/// mapped, at a cost of 2 to 3 ms for each of 1920x1080.
-void set_mmap_threshold(const render::Engines& engines) {
-  if (!has_processor(engines)) return;
-#ifdef __GLIBC__
-  constexpr int mmap_threshold_bytes = 1 << 20;
-  constexpr int trim_threshold_bytes = 16 << 20;
-  mallopt(M_MMAP_THRESHOLD, mmap_threshold_bytes);
-  mallopt(M_TRIM_THRESHOLD, trim_threshold_bytes);
-#endif
 }
 
 std::vector<net::Token> tokens(const ServeOptions& options) {
@@ -201,7 +185,7 @@ int run(const ServeOptions& options) {
     spdlog::info("rendering on {} ({}), ray tracer {}", engine->device().name,
                  engine->device().driver, protocol::enum_name(engine->tracer()));
   }
-  set_mmap_threshold(engines);
+  for (const render::Engine& engine : engines) set_malloc_thresholds(engine);
   if (!options.width && !options.height) set_default_size(hosting.session, engines);
   const std::unique_ptr<jobs::JobQueue> job_queue = make_job_queue(options, hosting);
   hosting.jobs = job_queue.get();

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/engine_options.hpp"
+#include "cli/malloc_thresholds.hpp"
 #include "cli/render/coverage.hpp"
 #include "cli/render/output/output_file.hpp"
 #include "cli/render/quality.hpp"
@@ -76,6 +77,7 @@ std::shared_ptr<const scene::Environment> environment_of(RenderContext& context,
 void set_up_device(RenderContext& context) {
   if (context.engine) return;
   context.engine = make_engine(context.options.device);
+  set_malloc_thresholds(*context.engine);
   if (const std::string error = context.engine->shader_error(); !error.empty()) {
     throw std::runtime_error(error);
   }

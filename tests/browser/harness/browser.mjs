@@ -38,6 +38,7 @@ function launchFirefox() {
     firefoxUserPrefs: {
       "webgl.force-enabled": true, // also by a software driver
       "dom.events.testing.asyncClipboard": true, // its driver grants no permissions
+      "browser.download.alwaysOpenPanel": false, // it takes the focus from the page
     },
   });
 }

@@ -1,11 +1,9 @@
 // Lights that the page adds, colours and removes; edits saved as a document and opened again.
 
 import assert from "node:assert/strict";
-import { readFileSync } from "node:fs";
-import { join } from "node:path";
 import { seriousFindings } from "../harness/axe.mjs";
 import { eventually, openTab, screenshot } from "../harness/browser.mjs";
-import { outputFolder } from "../harness/environment.mjs";
+import { downloaded } from "../harness/downloads.mjs";
 import { Stage } from "../harness/stage.mjs";
 
 const stage = new Stage({
@@ -61,15 +59,13 @@ stage.test("edits are saved as a document, opened again, and undone as one", asy
   await call("lights.remove", { light: first.name });
   await call("lights.add", { type: "disk", name: "panel" });
   const document = await edits();
-  const download = page.waitForEvent("download");
-  await page.getByRole("button", { name: "Save edits" }).click();
-  const file = await download;
-  assert.equal(file.suggestedFilename(), "shadow_objects_edits.json");
-  const path = join(outputFolder, "edits.json");
-  await file.saveAs(path);
-  assert.deepEqual(JSON.parse(readFileSync(path, "utf8")), document);
+  const file = await downloaded(page, () =>
+    page.getByRole("button", { name: "Save edits" }).click(),
+  );
+  assert.equal(file.name, "shadow_objects_edits.json");
+  assert.deepEqual(JSON.parse(file.bytes), document);
   await call("edits.apply", { edits: before });
-  await page.locator("input[name=edits_file]").setInputFiles(path);
+  await page.locator("input[name=edits_file]").setInputFiles(file.path);
   await eventually(async () => (await lights()).some(({ name }) => name === "panel"), "opened");
   await page.locator('[data-section="edits"] [role=status]', { hasText: "is applied" }).waitFor();
   assert.deepEqual(await edits(), document);
