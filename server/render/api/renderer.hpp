@@ -13,6 +13,7 @@
 #include "protocol/settings/settings.hpp"
 #include "render/api/engine.hpp"
 #include "render/api/frame_values.hpp"
+#include "render/api/section.hpp"
 #include "scene/scene.hpp"
 
 namespace heliograph::render {
@@ -42,6 +43,10 @@ class Renderer {
   /// Leaves out the instances for which `hidden` is true, one for each of the scene's; empty: none.
   /// Their shadows and reflections are gone, too. set_scene shows all again.
   void set_hidden(std::vector<bool> hidden);
+  /// Cuts the scene open by planes; without any it is whole. With planes rays find what the camera
+  /// sees, whatever gbuffer.source says. set_scene makes it whole again.
+  /// @throws std::invalid_argument for more than shared::most_section_planes
+  void set_section(Section section);
   /// Draws an outline around what these instances cover; set_scene ends that. Histories go on.
   /// Frames of the path traced reference alone, which know no instances, have none.
   void set_selected(std::span<const std::uint32_t> instances);

@@ -79,6 +79,19 @@ void Renderer::set_hidden(std::vector<bool> hidden) {
   state_->discard_frame_plan();
 }
 
+void Renderer::set_section(Section section) {
+  if (state_->moving->section() == section) return;
+  (void)section_constants(section);
+  const bool declares = state_->moving->section().planes.empty() != section.planes.empty();
+  state_->moving->set_section(std::move(section));
+  if (declares) {
+    state_->discard_frame_plan();
+  } else {
+    state_->has_previous = false;
+    state_->restart_accumulation();
+  }
+}
+
 void Renderer::set_selected(std::span<const std::uint32_t> instances) {
   state_->moving->select(instances);
   state_->stale = true;

@@ -43,10 +43,12 @@ void Renderer::State::discard_frame_plan() {
 
 CompiledFrame& Renderer::State::frame_plan() {
   if (compiled) return *compiled;
+  const Section& section = moving->section();
+  if (!section.planes.empty()) section_tracer.emplace(*parts.tracer, parts.programs, section);
   const FrameInputs inputs{parts.programs,
                            *scene,
                            moving->tables(),
-                           *parts.tracer,
+                           section.planes.empty() ? *parts.tracer : *section_tracer,
                            moving->structure(),
                            constants,
                            half_constants,

@@ -12,6 +12,7 @@
 #include "render/frame/compiled_frame.hpp"
 #include "render/frame/frame_constants.hpp"
 #include "render/passes/post/present.hpp"
+#include "render/passes/section/section_tracer.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "render/resources/scene_motion.hpp"
 
@@ -77,8 +78,9 @@ struct Renderer::State {
   std::optional<int> requested_jpeg;
   int jpeg_quality = 0;  // of the frame that has begun; 0: its pixels come back
 
-  std::unique_ptr<CompiledFrame> compiled;  // absent until it is needed: see frame_plan()
-  bool new_plan = false;                    // no frame has begun with it
+  std::optional<SectionTracer> section_tracer;  // of a plan with section planes
+  std::unique_ptr<CompiledFrame> compiled;      // absent until it is needed: see frame_plan()
+  bool new_plan = false;                        // no frame has begun with it
 
   /// Of the frame that has begun.
   struct Begun {

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "render/api/section.hpp"
 #include "render/resources/scene_resources.hpp"
 #include "scene/animation/pose.hpp"
 #include "tracing/ray_tracer.hpp"
@@ -70,6 +71,10 @@ class MovingScene {
   /// draws them, and their triangles emit no light. Empty: there are none. Never while a frame
   /// runs; plans must be rebuilt.
   void hide(std::vector<bool> hidden);
+  /// Planes that cut the scene open. Never while a frame runs; plans must be rebuilt where there
+  /// were none before or are none now.
+  void set_section(Section section) { section_ = std::move(section); }
+  const Section& section() const { return section_; }
   /// Marks instances for outline_selection() in place of those before. Never while a frame runs.
   void select(std::span<const std::uint32_t> instances);
   bool has_selection() const { return has_selection_; }
@@ -130,6 +135,7 @@ class MovingScene {
   bool structure_is_old_ = false;
   gpu::Buffer selection_;
   bool has_selection_ = false;
+  Section section_;
   std::optional<tracing::SceneTables> tables_;
 };
 

@@ -6,6 +6,7 @@
 #include "render/passes/blend/blend_surfaces.hpp"
 #include "render/passes/formats.hpp"
 #include "render/passes/rays/ray_stream.hpp"
+#include "render/passes/section/section.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
@@ -61,6 +62,7 @@ bool rays_find_gbuffer_sooner(const gpu::DeviceReport& device, protocol::TracerK
 
 bool traces_gbuffer(const gpu::Device& device, const FrameInputs& in) {
   using enum protocol::PrimaryVisibility;
+  if (has_section(in)) return true;
   if (in.settings.gbuffer.source != automatic) return in.settings.gbuffer.source == rays;
   return rays_find_gbuffer_sooner(device.report(), in.tracer.kind());
 }
@@ -95,18 +97,28 @@ GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
       plan.buffer("gbuffer.hits", sizeof(shared::Hit) * capacity, storage, gpu::Memory::device);
   const auto previous_vertices = plan.import(in.moving.previous_vertices());
   camera_rays(plan, in, "gbuffer.rays", current, rows);
+  const SectionCaps caps = declare_caps(plan, in, "section.caps");
   const std::uint32_t last_round = camera_rounds(in);
   for (std::uint32_t round = 1; round <= last_round; ++round) {
     const std::string name = round == 1 ? "gbuffer" : "gbuffer." + std::to_string(round);
     // Camera rays decide for themselves, by the filtered texel: as drawn triangles do.
     begin_rays(plan, in, name, next, Blending::stops);
-    plan.only_when(has_rays(plan, current), [&] {
+    const bool finds_caps = caps && round == 1;
+    const auto trace = [&] {
       in.tracer.trace_closest(plan, name + ".trace", in.structure, current, hits);
+      if (finds_caps) find_caps(plan, in, current, hits, caps);
       const bool last = round == last_round;
       store_hits(plan, in, {name, last, current, hits, previous_vertices, next}, gbuffer);
-    });
+    };
+    // The first rays are there in every frame, and so are the caps.
+    if (finds_caps) {
+      trace();
+    } else {
+      plan.only_when(has_rays(plan, current), trace);
+    }
     std::swap(current, next);
   }
+  draw_caps(plan, in, caps, gbuffer);
   return gbuffer;
 }
 

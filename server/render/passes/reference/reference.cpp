@@ -4,6 +4,7 @@
 #include "render/passes/formats.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/reference/trace_paths.hpp"
+#include "render/passes/section/section.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 #include "shaders/shared/ray.h"
@@ -35,9 +36,13 @@ class Wavefront {
         shadows_(stream("reference.shadows")),
         paths_(buffer("reference.paths", sizeof(shared::ReferencePath))),
         hits_(buffer("reference.hits", sizeof(shared::Hit))),
-        occluded_(buffer("reference.occluded", sizeof(std::uint32_t))) {}
+        occluded_(buffer("reference.occluded", sizeof(std::uint32_t))),
+        caps_(declare_caps(plan, in, "reference.caps")) {}
 
   gpu::ImageRef radiance() const { return radiance_; }
+
+  /// After all others.
+  void end() { color_caps(plan_, in_, caps_, radiance_); }
 
   void begin() {
     pass("reference.camera", shaders::reference_camera)
@@ -55,6 +60,7 @@ class Wavefront {
     constexpr std::uint32_t rounds = 1 + passed_layers;
     for (std::uint32_t round = 0; round < rounds; ++round) {
       in_.tracer.trace_closest(plan_, "reference.trace", in_.structure, rays_, hits_);
+      if (round == 0) find_caps(plan_, in_, rays_, hits_, caps_);
       pass("reference.primary", shaders::reference_primary)
           .read_write(rays_.rays)
           .read(hits_)
@@ -93,6 +99,7 @@ class Wavefront {
     const std::uint32_t rounds = 1 + bounces + passed_layers;
     for (std::uint32_t round = 0; round < rounds; ++round) {
       in_.tracer.trace_closest(plan_, "reference.trace", in_.structure, rays_, hits_);
+      if (round == 0) find_caps(plan_, in_, rays_, hits_, caps_);
       pass("reference.bounce", shaders::reference_bounce)
           .read_write(rays_.rays)
           .read(hits_)
@@ -149,6 +156,7 @@ class Wavefront {
   gpu::BufferRef paths_;
   gpu::BufferRef hits_;
   gpu::BufferRef occluded_;
+  SectionCaps caps_;
 };
 
 }  // namespace
@@ -169,6 +177,7 @@ gpu::ImageRef trace_reference(gpu::FramePlan& plan, const FrameInputs& in, gpu::
   } else {
     wavefront.same_paths();
   }
+  wavefront.end();
   return wavefront.radiance();
 }
 

@@ -10,6 +10,7 @@
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/reference/reference.hpp"
+#include "render/passes/section/section.hpp"
 #include "render/resources/lights/light_table.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
@@ -31,11 +32,13 @@ std::span<const EnvironmentCell> environment_cells(const FrameInputs& in) {
 class PathRounds {
  public:
   PathRounds(gpu::FramePlan& plan, const FrameInputs& in, gpu::BufferRef ground,
-             gpu::ImageRef radiance, gpu::BufferRef paths, kernels::Rows rows)
+             gpu::ImageRef radiance, gpu::BufferRef paths, const SectionCaps& caps,
+             kernels::Rows rows)
       : plan_(plan),
         in_(in),
         background_(in),
         ground_(ground),
+        caps_(caps),
         rows_(rows),
         shines_((in.moving.features() & shared::scene_emissive) != 0),
         capacity_(camera_ray_capacity(plan.extent().width, rows)),
@@ -57,13 +60,21 @@ class PathRounds {
     const std::uint32_t rounds = 1 + most_blended + bounces;
     for (std::uint32_t round = 0; round < rounds; ++round) {
       begin_rays(plan_, in_, "reference.path", next, Blending::stops);
-      plan_.only_when(has_rays(plan_, current), [&] {
+      const bool finds_caps = caps_ && round == 0;
+      const auto trace = [&] {
         in_.tracer.trace_closest(plan_, "reference.trace", in_.structure, current, hits_);
+        if (finds_caps) find_caps(plan_, in_, current, hits_, caps_);
         bounce(round, bounces, current, next);
         add(shadows_);
         add(sky_);
         if (shines_) add(emissive_);
-      });
+      };
+      // The first rays are there in every frame, and so are the caps.
+      if (finds_caps) {
+        trace();
+      } else {
+        plan_.only_when(has_rays(plan_, current), trace);
+      }
       std::swap(current, next);
     }
   }
@@ -110,6 +121,7 @@ class PathRounds {
   const FrameInputs& in_;
   SeenBackground background_;
   gpu::BufferRef ground_;
+  const SectionCaps& caps_;
   kernels::Rows rows_;
   bool shines_;
   std::uint32_t capacity_;
@@ -137,9 +149,11 @@ gpu::ImageRef trace_paths(gpu::FramePlan& plan, const FrameInputs& in, gpu::Buff
       plan.buffer("reference.paths",
                   sizeof(shared::ReferencePath) * camera_ray_capacity(extent.width, strips.front()),
                   storage, gpu::Memory::device);
+  const SectionCaps caps = declare_caps(plan, in, "reference.caps");
   for (const kernels::Rows rows : strips) {
-    PathRounds(plan, in, ground, radiance, paths, rows).declare();
+    PathRounds(plan, in, ground, radiance, paths, caps, rows).declare();
   }
+  color_caps(plan, in, caps, radiance);
   return radiance;
 }
 

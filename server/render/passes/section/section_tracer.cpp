@@ -1,0 +1,34 @@
+#include "render/passes/section/section_tracer.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "render/passes/rays/ray_stream.hpp"
+#include "shaders/embedded.hpp"
+
+namespace heliograph::render {
+
+shared::SectionConstants section_constants(const Section& section) {
+  if (section.planes.size() > shared::most_section_planes) {
+    throw std::invalid_argument("a section has at most 6 planes");
+  }
+  shared::SectionConstants constants{};
+  std::ranges::copy(section.planes, constants.planes);
+  constants.cap_color = section.cap_color;
+  constants.count = static_cast<std::uint32_t>(section.planes.size());
+  return constants;
+}
+
+void SectionTracer::cut(gpu::FramePlan& plan, const std::string& name,
+                        const tracing::RayStream& rays) const {
+  plan.pass(name + ".section",
+            [&programs = programs_]() -> const gpu::ComputeProgram& {
+              return programs.compute(shaders::section_rays);
+            })
+      .read(rays.count)
+      .read_write(rays.rays)
+      .constants([&section = section_] { return section_constants(section); })
+      .dispatch_indirect(rays.count, ray_groups_offset);
+}
+
+}  // namespace heliograph::render
