@@ -37,6 +37,8 @@ inline constexpr std::size_t max_listed_nodes = 10000;
 inline constexpr std::size_t max_edited_parts = 10000;
 inline constexpr std::size_t max_added_lights = 256;
 inline constexpr std::size_t max_edited_nodes = 100000;
+/// Planes that cut a scene open, as many as the renderer's rays are cut by.
+inline constexpr std::size_t max_section_planes = 6;
 /// Of lights, kelvin: where the approximation of the Planckian locus holds.
 inline constexpr double min_temperature = 1667.0;
 inline constexpr double max_temperature = 25000.0;

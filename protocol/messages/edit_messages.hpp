@@ -9,6 +9,7 @@
 #include "protocol/limits.hpp"
 #include "protocol/messages/kinds.hpp"
 #include "protocol/messages/scene_messages.hpp"
+#include "protocol/messages/section_messages.hpp"
 
 // Messages about what a session has changed in its scene, as one document, and about lights that
 // are not in the scene's file.
@@ -85,6 +86,7 @@ struct EditDocument {
   std::vector<std::uint32_t> hidden;
   std::vector<std::uint32_t> isolated;
   std::optional<EnvironmentEdit> environment;
+  std::optional<Section> section;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -111,6 +113,8 @@ struct EditDocument {
             .or_default(),
         field("environment", &EditDocument::environment,
               "The environment; absent: it stays as it is."),
+        field("section", &EditDocument::section,
+              "Planes that cut the scene open, as section.set; absent: none."),
     };
   }
   bool operator==(const EditDocument&) const = default;

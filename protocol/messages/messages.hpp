@@ -15,5 +15,6 @@
 #include "protocol/messages/node_messages.hpp"
 #include "protocol/messages/render_messages.hpp"
 #include "protocol/messages/scene_messages.hpp"
+#include "protocol/messages/section_messages.hpp"
 #include "protocol/messages/session_messages.hpp"
 #include "protocol/messages/stream_messages.hpp"

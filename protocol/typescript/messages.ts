@@ -309,6 +309,25 @@ export interface EditDocumentMaterials {
   patch: MaterialPatch;
 }
 
+export interface SectionPlane {
+  /** Whether the plane cuts. */
+  enabled?: boolean;
+  /** Direction of what is cut away, world space; any length but 0. */
+  normal: Vector3;
+  /**
+   * Distance of the plane from the origin, in the direction of the normal: what is farther is cut
+   * away. [metres]
+   */
+  offset: number;
+}
+
+export interface Section {
+  /** Linear colour of the caps that close solids where they are cut. */
+  cap_color?: Vector3;
+  /** What is in front of any of them is gone, with its shadows and reflections. */
+  planes: SectionPlane[];
+}
+
 export interface EditDocument {
   /** Lights that are not in the file, as lights.add. */
   added_lights?: LightAdd[];
@@ -324,6 +343,8 @@ export interface EditDocument {
   materials?: EditDocumentMaterials[];
   /** Names of the file's lights that are removed. */
   removed_lights?: string[];
+  /** Planes that cut the scene open, as section.set; absent: none. */
+  section?: Section;
   /** Version of this format. */
   version: number;
 }
@@ -1047,6 +1068,16 @@ export interface Selection {
   rev: number;
 }
 
+/** Result of section.get. */
+export interface SectionState {
+  /** Linear colour of the caps. */
+  cap_color: Vector3;
+  /** The planes, with normals of length 1. */
+  planes: SectionPlane[];
+  /** Revision of the session's state. */
+  rev: number;
+}
+
 /** Parameters of scene.snap. */
 export interface SceneSnapParams {
   /** Fraction of the image width, from the left. */
@@ -1564,6 +1595,18 @@ export interface SelectionChangedNotification {
   rev: number;
 }
 
+/** Parameters of the notification section.changed. */
+export interface SectionChangedNotification {
+  /** The viewer that changed it; empty: the server. */
+  by: string;
+  /** Linear colour of the caps. */
+  cap_color: Vector3;
+  /** The planes, with normals of length 1. */
+  planes: SectionPlane[];
+  /** Revision of the session's state. */
+  rev: number;
+}
+
 /** Parameters of the notification measurements.changed. */
 export interface MeasurementsChangedNotification {
   /** The viewer that changed them; empty: the server. */
@@ -1753,6 +1796,13 @@ export interface Methods {
    * Selects nodes in place of those before; frames show them, with all below them, in an outline.
    */
   "selection.set": { params: NodesInfoParams; result: Selection };
+  /** Returns the planes that cut this session's scene open. */
+  "section.get": { params: Empty; result: SectionState };
+  /**
+   * Cuts this session's scene open by planes in place of those before; solids are closed by caps.
+   * An empty list makes it whole again.
+   */
+  "section.set": { params: Section; result: SectionState };
   /** Returns the exact point of the mesh at a point of the image, or a vertex or edge near it. */
   "scene.snap": { params: SceneSnapParams; result: Snap };
   /** Lists what has been measured in the scene, as it is at this moment of the animation. */
@@ -1831,6 +1881,8 @@ export interface Notifications {
   "nodes.changed": NodesChangedNotification;
   /** Another viewer changed the selection. */
   "selection.changed": SelectionChangedNotification;
+  /** Another viewer changed the planes that cut the scene open. */
+  "section.changed": SectionChangedNotification;
   /** Another viewer changed what is measured. */
   "measurements.changed": MeasurementsChangedNotification;
   /** Another viewer added, edited or removed an annotation. */

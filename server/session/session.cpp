@@ -99,6 +99,7 @@ void Session::copy_from(const Session& other) {
   core_.scene_info = from.scene_info;
   core_.edits = from.edits;
   core_.nodes = from.nodes;
+  core_.section = from.section;
   core_.environment = from.environment;
   core_.environment_name = from.environment_name;
   core_.camera.copy_from(from.camera);

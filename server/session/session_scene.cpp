@@ -43,6 +43,7 @@ void SessionScene::unload(const std::string& by) {
   core_.scene_info = {};
   core_.edits = {};
   core_.nodes = {};
+  core_.section = {};
   core_.resources = nullptr;
   core_.environment = nullptr;
   core_.environment_name.reset();
@@ -94,6 +95,32 @@ Result<protocol::LightList> SessionScene::remove_light(const protocol::LightName
   return protocol::LightList{.lights = core_.edits.lights(), .rev = core_.rev};
 }
 
+protocol::SectionState SessionScene::section_state() const {
+  const protocol::Section& section = core_.section.get();
+  return {.planes = section.planes, .cap_color = section.cap_color, .rev = core_.rev};
+}
+
+Result<protocol::SectionState> SessionScene::section() const {
+  const std::lock_guard lock(core_.mutex);
+  if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
+  return section_state();
+}
+
+Result<protocol::SectionState> SessionScene::set_section(const protocol::Section& section,
+                                                         const std::string& by) {
+  const std::lock_guard lock(core_.mutex);
+  if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
+  const protocol::Section before = core_.section.get();
+  if (const Result<void> set = core_.section.set(section); !set) return set.error();
+  if (core_.section.get() != before) {
+    core_.changed();
+    const protocol::Section& now = core_.section.get();
+    core_.notify_others_latest<protocol::notifications::section_changed>(
+        by, {.planes = now.planes, .cap_color = now.cap_color, .rev = core_.rev, .by = by});
+  }
+  return section_state();
+}
+
 Result<protocol::EditsState> SessionScene::edits() const {
   const std::lock_guard lock(core_.mutex);
   if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
@@ -101,6 +128,7 @@ Result<protocol::EditsState> SessionScene::edits() const {
   core_.edits.describe(state.edits);
   state.edits.hidden = core_.nodes.hidden();
   state.edits.isolated = core_.nodes.isolated();
+  if (!core_.section.get().planes.empty()) state.edits.section = core_.section.get();
   state.edits.environment =
       protocol::EnvironmentEdit{.name = core_.environment_name,
                                 .rotation = core_.settings.environment.rotation,
@@ -125,6 +153,10 @@ Result<void> SessionScene::adopt(const std::shared_ptr<const scene::Scene>& scen
   if (const auto fits = edits.apply(document); !fits) return fits;
   NodeState nodes(scene);
   if (const auto fits = apply_visibility(document, nodes); !fits) return fits;
+  SectionPlanes section;
+  if (document.section) {
+    if (const auto fits = section.set(*document.section, "edits.section."); !fits) return fits;
+  }
   if (const auto& environment = document.environment) {
     const protocol::RawJson values(nlohmann::json{
         {"environment",
@@ -138,6 +170,7 @@ Result<void> SessionScene::adopt(const std::shared_ptr<const scene::Scene>& scen
   }
   core_.edits = std::move(edits);
   core_.nodes = std::move(nodes);
+  core_.section = std::move(section);
   return {};
 }
 

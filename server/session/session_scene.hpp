@@ -34,6 +34,9 @@ class SessionScene {
   protocol::Result<protocol::MaterialList> materials() const;
   protocol::Result<protocol::MaterialState> patch_material(const protocol::MaterialsPatch& request,
                                                            const std::string& by);
+  protocol::Result<protocol::SectionState> section() const;
+  protocol::Result<protocol::SectionState> set_section(const protocol::Section& section,
+                                                       const std::string& by);
   protocol::Result<protocol::EditsState> edits() const;
   /// All but the choice of an environment by name.
   protocol::Result<void> apply_edits(const protocol::EditDocument& document, const std::string& by);
@@ -45,6 +48,7 @@ class SessionScene {
                                          const std::string& by);
 
  private:
+  protocol::SectionState section_state() const;
   /// Takes the document's place for all that was changed before; `scene` is to be shown.
   protocol::Result<void> adopt(const std::shared_ptr<const scene::Scene>& scene,
                                const protocol::EditDocument& document, const std::string& by);

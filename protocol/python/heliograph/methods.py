@@ -692,6 +692,30 @@ class Scene(_Group):
             "x": x, "y": y, "edges": edges, "radius": radius, "vertices": vertices}))
 
 
+class Section(_Group):
+    def get(self) -> Dict[str, Any]:
+        """Returns the planes that cut this session's scene open.
+
+        Returns: cap_color, planes, rev.
+        """
+        return self._call("section.get", {})
+
+    def set(
+            self,
+            *,
+            planes: List[Dict[str, Any]],
+            cap_color: List[float] = _UNSET) -> Dict[str, Any]:
+        """Cuts this session's scene open by planes in place of those before; solids are closed
+        by caps. An empty list makes it whole again.
+
+        planes: What is in front of any of them is gone, with its shadows and reflections.
+        cap_color: Linear colour of the caps that close solids where they are cut.
+
+        Returns: cap_color, planes, rev.
+        """
+        return self._call("section.set", _given({"planes": planes, "cap_color": cap_color}))
+
+
 class Selection(_Group):
     def get(self) -> Dict[str, Any]:
         """Returns the nodes that the session's viewers have selected.
@@ -938,6 +962,7 @@ class Methods:
         self.reference = Reference(call)
         self.rpc = Rpc(call)
         self.scene = Scene(call)
+        self.section = Section(call)
         self.selection = Selection(call)
         self.session = Session(call)
         self.settings = Settings(call)

@@ -50,7 +50,9 @@ RenderEdits::RenderEdits(const std::shared_ptr<const scene::Scene>& scene,
                          const protocol::EditDocument& document)
     : edits_(scene) {
   session::NodeState nodes(scene);
-  for (const auto& fits : {edits_.apply(document), session::apply_visibility(document, nodes)}) {
+  const auto cut = section_.set(document.section.value_or(protocol::Section()), "edits.section.");
+  for (const auto& fits :
+       {edits_.apply(document), session::apply_visibility(document, nodes), cut}) {
     if (!fits) throw std::runtime_error(fits.error().message);
   }
   if (nodes.hidden_instances()) hidden_ = *nodes.hidden_instances();
@@ -60,6 +62,7 @@ void RenderEdits::apply(render::Renderer& renderer) const {
   if (edits_.device_lights()) renderer.set_lights(*edits_.device_lights());
   if (edits_.device_materials()) renderer.set_materials(*edits_.device_materials());
   if (!hidden_.empty()) renderer.set_hidden(hidden_);
+  if (section_.enabled()) renderer.set_section(*section_.enabled());
 }
 
 }  // namespace heliograph::cli

@@ -10,6 +10,7 @@
 #include "render/api/renderer.hpp"
 #include "scene/scene.hpp"
 #include "session/state/scene_edits.hpp"
+#include "session/state/section_planes.hpp"
 
 namespace heliograph::cli {
 
@@ -37,6 +38,7 @@ class RenderEdits {
  private:
   session::SceneEdits edits_;
   std::vector<bool> hidden_;  // by instance; empty: none
+  session::SectionPlanes section_;
 };
 
 }  // namespace heliograph::cli

@@ -21,6 +21,7 @@ void add_frame_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_edit_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_node_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_probe_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
+void add_section_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_measurement_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_annotation_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_job_commands(protocol::Dispatcher& dispatcher, SessionHost& host);

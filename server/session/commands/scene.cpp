@@ -26,6 +26,7 @@ Result<SceneListResult> list_scenes(const SessionHost& host, const Session& sess
 
 void add_scene_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
   add_node_commands(dispatcher, host);
+  add_section_commands(dispatcher, host);
   add_measurement_commands(dispatcher, host);
   add_annotation_commands(dispatcher, host);
   add_command<methods::scene_list>(dispatcher, host,

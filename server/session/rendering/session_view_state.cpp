@@ -70,6 +70,10 @@ void SessionView::adopt_edits(const RenderState& before) {
     renderer_->set_hidden(state_.hidden ? *state_.hidden : std::vector<bool>());
     discontinuous_ = true;
   }
+  if (state_.section != (same_scene ? before.section : nullptr)) {
+    renderer_->set_section(state_.section ? *state_.section : render::Section());
+    discontinuous_ = true;
+  }
   if (state_.selected != (same_scene ? before.selected : nullptr)) {
     renderer_->set_selected(state_.selected ? std::span(*state_.selected)
                                             : std::span<const std::uint32_t>());

@@ -14,6 +14,7 @@
 namespace heliograph::render {
 class LitEnvironment;
 class SceneResources;
+struct Section;
 }  // namespace heliograph::render
 
 namespace heliograph::session {
@@ -31,6 +32,7 @@ struct RenderState {
   std::shared_ptr<const SceneEdits::Materials> materials;      // null: the scene's own
   std::shared_ptr<const std::vector<bool>> hidden;             // by instance; null: none
   std::shared_ptr<const std::vector<std::uint32_t>> selected;  // instances; null: none
+  std::shared_ptr<const render::Section> section;              // null: the scene is whole
   std::shared_ptr<const render::LitEnvironment> environment;   // null: the scene's own
   scene::Camera camera;
   std::uint64_t camera_moves = 0;

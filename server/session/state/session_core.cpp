@@ -45,13 +45,13 @@ void SessionCore::follow(const SessionCore& leader) {
   bookmarks = leader.bookmarks;
   measured = leader.measured;
   annotations = leader.annotations;
-  const bool same = resources == leader.resources && scene == leader.scene &&
-                    settings == leader.settings && environment == leader.environment &&
-                    edits.device_lights() == leader.edits.device_lights() &&
-                    edits.device_materials() == leader.edits.device_materials() &&
-                    nodes.hidden_instances() == leader.nodes.hidden_instances() &&
-                    nodes.isolated() == leader.nodes.isolated() &&
-                    nodes.selected() == leader.nodes.selected() && clock == timeline.clock();
+  const bool same =
+      resources == leader.resources && scene == leader.scene && settings == leader.settings &&
+      environment == leader.environment && edits.device_lights() == leader.edits.device_lights() &&
+      edits.device_materials() == leader.edits.device_materials() &&
+      nodes.hidden_instances() == leader.nodes.hidden_instances() &&
+      nodes.isolated() == leader.nodes.isolated() && nodes.selected() == leader.nodes.selected() &&
+      section.get() == leader.section.get() && clock == timeline.clock();
   if (same) return;
   if (scene != leader.scene) camera.copy_from(leader.camera);
   scene = leader.scene;
@@ -59,6 +59,7 @@ void SessionCore::follow(const SessionCore& leader) {
   scene_info = leader.scene_info;
   edits = leader.edits;
   nodes = leader.nodes;
+  section = leader.section;
   environment = leader.environment;
   environment_name = leader.environment_name;
   settings = leader.settings;
@@ -76,6 +77,7 @@ RenderState SessionCore::snapshot() const {
           .materials = edits.device_materials(),
           .hidden = nodes.hidden_instances(),
           .selected = nodes.selected_instances(),
+          .section = section.enabled(),
           .environment = environment,
           .camera = camera.camera(),
           .camera_moves = camera.moves(),

@@ -22,6 +22,7 @@
 #include "session/state/reference_mode.hpp"
 #include "session/state/render_state.hpp"
 #include "session/state/scene_edits.hpp"
+#include "session/state/section_planes.hpp"
 #include "session/state/session_options.hpp"
 #include "session/state/timeline.hpp"
 #include "session/viewers/viewer_set.hpp"
@@ -113,6 +114,7 @@ struct SessionCore {
   protocol::SceneInfo scene_info;
   SceneEdits edits;
   NodeState nodes;
+  SectionPlanes section;
   std::optional<std::string> environment_name;  // with `environment`: null where the scene's own
   std::shared_ptr<const render::LitEnvironment> environment;
   CameraState camera;

@@ -6,7 +6,7 @@
 
 layout(push_constant) uniform Constants { SectionConstants section; };
 
-const float never = 1e30;
+const float never = 1e15; // metres: beyond all coordinates, and what adds to it is finite
 
 /// The interval of the ray that no plane cuts away: from x to y, empty where x >= y. `entered`: the
 /// number of the plane at x, or -1 where no plane is.

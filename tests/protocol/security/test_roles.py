@@ -14,7 +14,7 @@ COMMANDS = """
     scene.load scene.unload scene.cancel camera.set camera.fit camera.orbit
     settings.patch settings.preset animation.play animation.pause animation.seek animation.rate
     session.create session.close session.control materials.patch lights.patch environment.set
-    lights.add lights.remove edits.apply
+    lights.add lights.remove edits.apply section.set
     frame.step frame.run reference.start reference.stop job.create job.cancel
     measurements.add measurements.remove measurements.clear measurements.unit
     annotations.add annotations.edit annotations.remove annotations.clear

@@ -55,6 +55,8 @@ function deedOf(method: string, change: Change, schema: ControlGroup): string | 
       return `loaded ${change.scene?.name}`;
     case "bookmarks.changed":
       return "changed the bookmarks";
+    case "section.changed":
+      return "changed the section planes";
     case "measurements.changed":
       return "changed the measurements";
     case "annotations.changed":

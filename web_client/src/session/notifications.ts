@@ -8,6 +8,7 @@ import type { Marks } from "./marks/marks.ts";
 import type { NodeStore } from "./node_store.ts";
 import type { SceneLoading } from "./scene_loading.ts";
 import type { SceneParts } from "./scene_parts.ts";
+import type { SectionStore } from "./section_store.ts";
 import type { SettingsStore } from "./settings_store.ts";
 import type { ShownScene } from "./shown_scene.ts";
 import type { UndoHistory } from "./undo_history.ts";
@@ -17,6 +18,7 @@ interface Targets {
   settings: SettingsStore;
   parts: SceneParts;
   nodes: NodeStore;
+  section: SectionStore;
   shown: ShownScene;
   loading: SceneLoading;
   history: UndoHistory;
@@ -64,6 +66,9 @@ export function receiveNotification(targets: Targets, method: string, params: un
     case "nodes.changed":
     case "selection.changed":
       targets.nodes.notified(method, params);
+      break;
+    case "section.changed":
+      targets.section.take(params as Notifications["section.changed"]);
       break;
     case "scene.progress":
       targets.loading.progressed(params as Notifications["scene.progress"]);

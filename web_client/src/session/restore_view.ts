@@ -43,6 +43,7 @@ export async function restoreView(host: RestoreHost, state: ViewState): Promise<
     restoreLights,
     restoreMaterials,
     restoreNodes,
+    restoreSection,
     restoreClip,
     restoreCamera,
   ]);
@@ -156,6 +157,10 @@ async function restoreNodes({ rpc, supports }: RestoreHost, { nodes }: ViewState
   if (hidden.length > 0) await rpc.request("nodes.patch", { nodes: hidden, patch: { visible: false } });
   if (isolated.length > 0) await rpc.request("nodes.isolate", { nodes: isolated });
   if (selected.length > 0) await rpc.request("selection.set", { nodes: selected });
+}
+
+async function restoreSection(host: RestoreHost, { section }: ViewState): Promise<void> {
+  if (section && host.supports("section.set")) await host.rpc.request("section.set", section);
 }
 
 /** A light or material that the server rejects does not stop the others. */

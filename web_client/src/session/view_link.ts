@@ -1,9 +1,11 @@
 // A view state in the fragment of a URL, which browsers do not send to the server.
 
 import type { JsonObject, JsonValue, Vector3 } from "heliograph/json.ts";
+import type { Section } from "heliograph/messages.ts";
 import { isObject } from "heliograph/settings_tree.ts";
 import type { CameraPose } from "../common/camera_pose.ts";
 import { checkedEdits, maxEdits } from "./scene_edits.ts";
+import { maxPlanes } from "./section_store.ts";
 import type { ClipState, NodesShown, ViewState } from "./view_state.ts";
 
 const key = "view";
@@ -84,6 +86,7 @@ function checked(value: unknown): ViewState | null {
   if (materials) state.materials = materials;
   const nodes = checkedNodes(value.nodes);
   if (nodes) state.nodes = nodes;
+  if (isSection(value.section)) state.section = value.section;
   if (isObject(settings)) state.settings = settings;
   if (clip === null || isClip(clip)) state.clip = clip;
   if (isCamera(camera)) state.camera = camera;
@@ -105,6 +108,19 @@ function checkedNodes(value: JsonValue | undefined): NodesShown | undefined {
 
 function isIdList(value: unknown): value is number[] {
   return Array.isArray(value) && value.every((id) => Number.isSafeInteger(id) && id >= 0);
+}
+
+function isSection(value: unknown): value is Section {
+  if (!isObject(value) || !Array.isArray(value.planes)) return false;
+  const { planes, cap_color } = value;
+  if (cap_color !== undefined && !isVector(cap_color)) return false;
+  return planes.length <= maxPlanes && planes.every(isPlane);
+}
+
+function isPlane(value: unknown): boolean {
+  if (!isObject(value)) return false;
+  const { normal, offset, enabled } = value;
+  return isVector(normal) && Number.isFinite(offset) && typeof enabled === "boolean";
 }
 
 function isClip(value: unknown): value is ClipState {

@@ -1,7 +1,7 @@
 // What the page shows, in a form for links, bookmarks and the restore after a reconnect.
 
 import type { JsonObject } from "heliograph/json.ts";
-import type { AnimationState } from "heliograph/messages.ts";
+import type { AnimationState, Section } from "heliograph/messages.ts";
 import { type ControlGroup, allControls } from "heliograph/settings_schema.ts";
 import { joinPatches, patchOf, sameValue, valueAt } from "heliograph/settings_tree.ts";
 import type { CameraPose } from "../common/camera_pose.ts";
@@ -33,6 +33,8 @@ export interface ViewState {
   lights?: Edits;
   materials?: Edits;
   nodes?: NodesShown;
+  /** Planes that cut the scene open. */
+  section?: Section;
   /** Differences from the defaults. */
   settings?: JsonObject;
   /** null: the scene is in its rest pose. */

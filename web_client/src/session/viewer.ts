@@ -23,6 +23,7 @@ import { OwnSession } from "./own_session.ts";
 import { SceneLoading } from "./scene_loading.ts";
 import { SceneParts } from "./scene_parts.ts";
 import { ServerCapabilities } from "./server_capabilities.ts";
+import { SectionStore } from "./section_store.ts";
 import { SessionRestore } from "./session_restore.ts";
 import { SettingsStore } from "./settings_store.ts";
 import { ShownScene } from "./shown_scene.ts";
@@ -42,6 +43,7 @@ export class Viewer {
   readonly capabilities: ServerCapabilities;
   readonly parts: SceneParts;
   readonly nodes: NodeStore;
+  readonly section: SectionStore;
   readonly stream: StreamRequests;
   readonly queries: FrameQueries;
   readonly bookmarks: Bookmarks;
@@ -162,10 +164,14 @@ export class Viewer {
       capabilities: this.capabilities,
       history: this.history,
       loading: this.loading,
-      shows: (edits) => this.nodes.notified("nodes.changed", edits),
+      shows: (edits) => {
+        this.nodes.notified("nodes.changed", edits);
+        void this.section.read();
+      },
       report: (error) => this.report(error),
     });
     this.nodes = new NodeStore(this);
+    this.section = new SectionStore(this);
     const marks = {
       rpc: this.rpc,
       capabilities: this.capabilities,
@@ -255,6 +261,7 @@ export class Viewer {
       environment: this.parts.environment.value?.current,
       ...this.parts.edits(),
       nodes: this.nodes.shown(),
+      section: this.section.state(),
       settings: changesOf(this.settings.schema.value, this.settings.tree.value),
       clip: this.shown.clip(),
       camera: this.camera.value ?? undefined,

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "protocol/limits.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
 
 shared::SectionConstants section_constants(const Section& section) {
+  static_assert(protocol::max_section_planes == shared::most_section_planes);
   if (section.planes.size() > shared::most_section_planes) {
     throw std::invalid_argument("a section has at most 6 planes");
   }

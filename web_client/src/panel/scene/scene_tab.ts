@@ -16,6 +16,7 @@ import { createMaterialSection } from "./material_section.ts";
 import { createPartFields } from "./part_fields.ts";
 import { createQualityField } from "./quality_field.ts";
 import { createScenePicker } from "./scene_picker.ts";
+import { createPlanesSection } from "./section_planes.ts";
 
 /** Groups of settings that are shown here instead of in the Settings tab. */
 export const appearanceGroups = ["exposure", "tone_map", "environment", "background"];
@@ -48,6 +49,7 @@ export function createSceneTab(
       ...createEnvironmentField(viewer, upload),
     ),
     createNodeSection(viewer, picker),
+    createPlanesSection(viewer),
     createLightSection(viewer),
     appearance,
     createMaterialSection(viewer.parts).node,
