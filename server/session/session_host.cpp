@@ -9,7 +9,7 @@
 
 #include "jobs/job_queue.hpp"
 #include "session/commands/commands.hpp"
-#include "session/state/edited_parts.hpp"
+#include "session/edits/edited_parts.hpp"
 
 namespace heliograph::session {
 

@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "session/edits/edited_parts.hpp"
 #include "session/library/scene_description.hpp"
-#include "session/state/edited_parts.hpp"
 
 namespace heliograph::session {
 

@@ -3,7 +3,7 @@ import test from "node:test";
 import type { JsonObject, JsonValue } from "heliograph/json.ts";
 import { RpcPeer } from "heliograph/rpc.ts";
 import { refinementOf, refinementText, shownSamples } from "../src/session/refinement.ts";
-import { UndoHistory } from "../src/session/undo_history.ts";
+import { UndoHistory } from "../src/session/history/undo_history.ts";
 import { SettingsStore } from "../src/session/settings_store.ts";
 
 const schema: JsonObject = {

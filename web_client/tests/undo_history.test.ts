@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import { UndoHistory } from "../src/session/undo_history.ts";
-import { inverseOf, pathsOf } from "../src/session/settings_steps.ts";
+import { UndoHistory } from "../src/session/history/undo_history.ts";
+import { inverseOf, pathsOf } from "../src/session/history/settings_steps.ts";
 
 test("the inverse of a patch holds the previous values, and only those", () => {
   const tree = { taa: { enabled: true, frames: 8 }, seed: 3 };

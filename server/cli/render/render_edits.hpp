@@ -9,8 +9,8 @@
 #include "protocol/messages/edit_messages.hpp"
 #include "render/api/renderer.hpp"
 #include "scene/scene.hpp"
-#include "session/state/scene_edits.hpp"
-#include "session/state/section_planes.hpp"
+#include "session/edits/scene_edits.hpp"
+#include "session/edits/section_planes.hpp"
 
 namespace heliograph::cli {
 

@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "session/commands/commands.hpp"
-#include "session/state/edited_parts.hpp"
+#include "session/edits/edited_parts.hpp"
 
 // Lights, materials and the environment of a session's scene.
 

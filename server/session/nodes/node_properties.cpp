@@ -5,8 +5,8 @@
 #include <set>
 #include <string_view>
 
+#include "session/edits/scene_edits.hpp"
 #include "session/library/scene_description.hpp"
-#include "session/state/scene_edits.hpp"
 
 namespace heliograph::session {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "protocol/settings/settings.hpp"
 #include "scene/scene.hpp"
+#include "session/edits/scene_edits.hpp"
 #include "session/state/animation_clock.hpp"
-#include "session/state/scene_edits.hpp"
 #include "stream/encoded_frame.hpp"
 
 namespace heliograph::render {

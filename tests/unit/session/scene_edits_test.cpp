@@ -1,4 +1,4 @@
-#include "session/state/scene_edits.hpp"
+#include "session/edits/scene_edits.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "session/state/section_planes.hpp"
+#include "session/edits/section_planes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 import type { Notifications, SessionInfo } from "heliograph/messages.ts";
 import type { ControlGroup } from "heliograph/settings_schema.ts";
 import { viewerName } from "./control_state.ts";
-import { describePatch } from "./settings_steps.ts";
+import { describePatch } from "./history/settings_steps.ts";
 
 export interface Activity {
   /** The viewer's id. */

@@ -6,7 +6,7 @@ import type { CameraPose } from "../common/camera_pose.ts";
 import type { Signal } from "../common/signal.ts";
 import type { LatencyMeter } from "../stream/latency.ts";
 import { clockMs } from "../stream/worker_messages.ts";
-import type { UndoHistory } from "./undo_history.ts";
+import type { UndoHistory } from "./history/undo_history.ts";
 
 interface CameraMovesHost {
   rpc: RpcPeer;

@@ -10,7 +10,7 @@ import type {
 import { ChannelClosed, type RpcPeer } from "heliograph/rpc.ts";
 import { Signal } from "../common/signal.ts";
 import type { ServerCapabilities } from "./server_capabilities.ts";
-import type { UndoHistory } from "./undo_history.ts";
+import type { UndoHistory } from "./history/undo_history.ts";
 import type { NodesShown } from "./view_state.ts";
 
 const nodesPerRequest = 10_000;

@@ -11,7 +11,7 @@ import type { SceneParts } from "./scene_parts.ts";
 import type { SectionStore } from "./section_store.ts";
 import type { SettingsStore } from "./settings_store.ts";
 import type { ShownScene } from "./shown_scene.ts";
-import type { UndoHistory } from "./undo_history.ts";
+import type { UndoHistory } from "./history/undo_history.ts";
 import type { ViewRestore } from "./view_restore.ts";
 
 interface Targets {

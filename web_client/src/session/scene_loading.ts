@@ -5,7 +5,7 @@ import { ErrorCode, type SceneInfo, type SceneProgress } from "heliograph/messag
 import { ChannelClosed, RpcError, type RpcPeer } from "heliograph/rpc.ts";
 import { Signal } from "../common/signal.ts";
 import { type FileError, describeLoadError } from "./file_errors.ts";
-import type { UndoHistory } from "./undo_history.ts";
+import type { UndoHistory } from "./history/undo_history.ts";
 import type { ViewState } from "./view_state.ts";
 
 export interface Loading {

@@ -18,7 +18,7 @@ import { Signal } from "../common/signal.ts";
 import { type Edits, type Part, addRequest, editsOf } from "./scene_edits.ts";
 import type { SceneLoading } from "./scene_loading.ts";
 import type { ServerCapabilities } from "./server_capabilities.ts";
-import type { UndoHistory } from "./undo_history.ts";
+import type { UndoHistory } from "./history/undo_history.ts";
 
 const loadTimeoutMs = 600_000;
 

@@ -6,7 +6,7 @@ import { ChannelClosed, type RpcPeer } from "heliograph/rpc.ts";
 import { Signal } from "../common/signal.ts";
 import { dot, scale } from "../common/vector.ts";
 import type { ServerCapabilities } from "./server_capabilities.ts";
-import type { UndoHistory } from "./undo_history.ts";
+import type { UndoHistory } from "./history/undo_history.ts";
 
 export const maxPlanes = 6;
 

@@ -12,8 +12,8 @@ import {
 import { joinPatches, mergePatch, patchOf, sameValue, valueAt } from "heliograph/settings_tree.ts";
 import { presetLabel, withPlainLabels } from "../common/labels.ts";
 import { Signal } from "../common/signal.ts";
-import { describePatch, inverseOf, pathsOf } from "./settings_steps.ts";
-import type { UndoHistory } from "./undo_history.ts";
+import { describePatch, inverseOf, pathsOf } from "./history/settings_steps.ts";
+import type { UndoHistory } from "./history/undo_history.ts";
 
 const noControls: ControlGroup = {
   path: "",

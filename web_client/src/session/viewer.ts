@@ -28,7 +28,7 @@ import { SessionRestore } from "./session_restore.ts";
 import { SettingsStore } from "./settings_store.ts";
 import { ShownScene } from "./shown_scene.ts";
 import { StreamRequests } from "./stream_requests.ts";
-import { UndoHistory } from "./undo_history.ts";
+import { UndoHistory } from "./history/undo_history.ts";
 import { ViewRestore } from "./view_restore.ts";
 import { type ViewState, changesOf } from "./view_state.ts";
 

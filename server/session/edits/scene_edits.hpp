@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "session/state/light_edits.hpp"
-#include "session/state/material_edits.hpp"
+#include "session/edits/light_edits.hpp"
+#include "session/edits/material_edits.hpp"
 
 namespace heliograph::session {
 

@@ -1,4 +1,4 @@
-#include "session/state/color_temperature.hpp"
+#include "session/edits/color_temperature.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "session/state/light_edits.hpp"
+#include "session/edits/light_edits.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "protocol/limits.hpp"
+#include "session/edits/edited_parts.hpp"
+#include "session/edits/light_form.hpp"
 #include "session/library/scene_description.hpp"
-#include "session/state/edited_parts.hpp"
-#include "session/state/light_form.hpp"
 
 namespace heliograph::session {
 

@@ -1,12 +1,12 @@
-#include "session/state/material_edits.hpp"
+#include "session/edits/material_edits.hpp"
 
 #include <algorithm>
 #include <array>
 #include <string_view>
 #include <utility>
 
+#include "session/edits/edited_parts.hpp"
 #include "session/library/scene_description.hpp"
-#include "session/state/edited_parts.hpp"
 
 namespace heliograph::session {
 

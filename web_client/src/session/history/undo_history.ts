@@ -1,7 +1,7 @@
 // One history of everything that this page changes: settings, lights, materials, environment,
 // camera, scene. All changes of one drag are one step.
 
-import { Signal } from "../common/signal.ts";
+import { Signal } from "../../common/signal.ts";
 
 interface Step {
   /** What was changed, as in "Undo: exposure". */

@@ -1,13 +1,13 @@
-#include "session/state/light_form.hpp"
+#include "session/edits/light_form.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 #include <tuple>
 
+#include "session/edits/color_temperature.hpp"
+#include "session/edits/edited_parts.hpp"
 #include "session/library/scene_description.hpp"
-#include "session/state/color_temperature.hpp"
-#include "session/state/edited_parts.hpp"
 
 namespace heliograph::session {
 
