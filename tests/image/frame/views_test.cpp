@@ -232,5 +232,21 @@ TEST_F(Views, MotionOfStaticSceneHasNoError) {
   EXPECT_LT(largest, 0.02f) << "pixels";
 }
 
+TEST_F(Views, SurfacesArePickedFromFramesThatKeepNoBuffers) {
+  rig_.renderer.keep_buffers(false);
+  for (const auto source :
+       {protocol::PrimaryVisibility::automatic, protocol::PrimaryVisibility::rays,
+        protocol::PrimaryVisibility::raster}) {
+    protocol::Settings settings;
+    settings.gbuffer.source = source;
+    rig_.apply(settings);
+    rig_.renderer.render();
+    EXPECT_FALSE(rig_.renderer.has_buffers());
+    const auto picked = rig_.renderer.pick({0.5f, 0.8f});
+    ASSERT_TRUE(picked) << protocol::enum_name(source) << ": " << picked.error().message;
+    EXPECT_TRUE(*picked) << protocol::enum_name(source);
+  }
+}
+
 }  // namespace
 }  // namespace heliograph::test

@@ -110,8 +110,9 @@ GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
       const bool last = round == last_round;
       store_hits(plan, in, {name, last, current, hits, previous_vertices, next}, gbuffer);
     };
-    // The first rays are there in every frame, and so are the caps.
-    if (finds_caps) {
+    // The first rays are there in every frame, and so is what they find: images that every frame
+    // writes can be read after it.
+    if (round == 1) {
       trace();
     } else {
       plan.only_when(has_rays(plan, current), trace);
