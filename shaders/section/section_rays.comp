@@ -18,7 +18,7 @@ void main() {
   kept = vec2(max(kept.x, t_min), min(kept.y, t_max));
   // A ray of which nothing is left goes on to where nothing is: one without any interval would not
   // be a ray, and find no background.
-  if (kept.x >= kept.y) kept = vec2(never, 2.0 * never);
+  if (kept.x >= kept.y) kept = vec2(section_never, 2.0 * section_never);
   rays[index].t_min = kept.x;
   rays[index].t_max = kept.y;
 }

@@ -5,6 +5,8 @@
 SHARED_BEGIN
 
 SHARED_CONSTANT uint most_section_planes = 6u;
+// Metres: beyond all coordinates, and what adds to it is finite.
+SHARED_CONSTANT float section_never = 1e15;
 
 // Push constants of the passes of sections.
 struct SectionConstants {

@@ -14,4 +14,13 @@ inline glm::vec3 octahedral_decode(const glm::vec2& p) {
   return glm::normalize(d);
 }
 
+/// The inverse.
+inline glm::vec2 octahedral_encode(const glm::vec3& direction) {
+  const glm::vec3 size = glm::abs(direction);
+  const glm::vec2 p = glm::vec2(direction) / (size.x + size.y + size.z);
+  if (direction.z >= 0.0f) return p;
+  return {(1.0f - std::abs(p.y)) * (p.x >= 0.0f ? 1.0f : -1.0f),
+          (1.0f - std::abs(p.x)) * (p.y >= 0.0f ? 1.0f : -1.0f)};
+}
+
 }  // namespace heliograph::render

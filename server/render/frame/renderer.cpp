@@ -10,6 +10,7 @@
 #include "render/frame/probe.hpp"
 #include "render/frame/renderer_state.hpp"
 #include "render/passes/sampling/plan_samples.hpp"
+#include "render/passes/shading/draw_shading.hpp"
 #include "render/views/debug_view.hpp"
 #include "render/views/text_overlay.hpp"
 
@@ -42,6 +43,7 @@ void Renderer::set_scene(std::shared_ptr<const SceneResources> scene) {
   state_->compiled.reset();
   state_->scene = scene ? std::move(scene) : state_->nothing;
   state_->moving.emplace(state_->parts.device, *state_->parts.tracer, state_->scene);
+  state_->moving->set_plain(is_plain(state_->settings));
   state_->discard_frame_plan();
 }
 
@@ -145,6 +147,7 @@ protocol::Result<void> Renderer::set_settings(const protocol::Settings& settings
   }
   protocol::Settings chosen = settings;
   choose_reference(chosen);
+  choose_shading(chosen);
   if (chosen != state_->settings) state_->change_settings(chosen);
   return {};
 }

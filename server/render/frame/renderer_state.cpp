@@ -4,6 +4,7 @@
 
 #include "render/frame/buffer_list.hpp"
 #include "render/frame/probe.hpp"
+#include "render/passes/shading/draw_shading.hpp"
 #include "render/views/debug_view.hpp"
 #include "render/views/view_colors.hpp"
 
@@ -84,7 +85,10 @@ void Renderer::State::set_drawn() {
 void Renderer::State::change_settings(const protocol::Settings& changed) {
   const auto scope = protocol::changed_scope(settings, changed);
   settings = changed;
-  if (includes(scope, protocol::ResetScope::structure)) discard_frame_plan();
+  if (includes(scope, protocol::ResetScope::structure)) {
+    discard_frame_plan();
+    moving->set_plain(is_plain(settings));
+  }
   stale = true;
   if (includes(scope, protocol::ResetScope::history)) has_previous = false;
   if (includes(scope, protocol::ResetScope::accumulation)) restart_accumulation();

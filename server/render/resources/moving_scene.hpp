@@ -64,6 +64,9 @@ class MovingScene {
   /// and draws go by. Never while a frame runs.
   /// @return whether tables(), emissive() or features() changed: plans must be rebuilt
   bool set_materials(std::span<const shared::Material> materials);
+  /// Whether all materials are one, grey, rough and opaque but for holes, whatever they are. Never
+  /// while a frame runs; plans must be rebuilt.
+  void set_plain(bool plain);
   /// Another environment than the scene's own; plans must be rebuilt.
   void set_environment(std::shared_ptr<const LitEnvironment> environment);
 
@@ -106,6 +109,7 @@ class MovingScene {
   };
 
   std::span<const shared::Material> materials() const;
+  bool replace_materials(std::span<const shared::Material> materials);
   bool remake_emissive();
   std::vector<glm::mat4> shining_worlds() const;
   void list_shown_draws();
@@ -118,6 +122,8 @@ class MovingScene {
   std::shared_ptr<const SceneResources> resources_;
   std::shared_ptr<const LitEnvironment> environment_;
   std::unique_ptr<ChangedMaterials> changed_materials_;  // null: the scene's
+  std::vector<shared::Material> chosen_materials_;  // what set_plain() hides; empty: the scene's
+  bool plain_ = false;
   EmissiveLights emissive_;
   std::vector<shared::Light> lights_at_rest_;
   std::uint32_t features_ = 0;

@@ -6,12 +6,10 @@
 
 layout(push_constant) uniform Constants { SectionConstants section; };
 
-const float never = 1e15; // metres: beyond all coordinates, and what adds to it is finite
-
 /// The interval of the ray that no plane cuts away: from x to y, empty where x >= y. `entered`: the
 /// number of the plane at x, or -1 where no plane is.
 vec2 kept_interval(vec3 origin, vec3 direction, out int entered) {
-  vec2 kept = vec2(0.0, never);
+  vec2 kept = vec2(0.0, section_never);
   entered = -1;
   for (int i = 0; i < int(section.count); ++i) {
     float above = dot(section.planes[i].xyz, origin) - section.planes[i].w;
@@ -25,7 +23,7 @@ vec2 kept_interval(vec3 origin, vec3 direction, out int entered) {
     } else if (rise > 0.0) {
       kept.y = min(kept.y, -above / rise);
     } else if (above > 0.0) {
-      kept.y = -never;
+      kept.y = -section_never;
     }
   }
   return kept;

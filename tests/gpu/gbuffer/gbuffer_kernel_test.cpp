@@ -25,8 +25,8 @@ scene::Camera view_of(const scene::Scene& scene, bool orthographic) {
 class KernelComparison {
  public:
   KernelComparison(std::shared_ptr<const scene::Scene> scene, const scene::Camera& camera,
-                   VkExtent2D extent)
-      : rig_(std::move(scene), camera, {.extent = extent}),
+                   VkExtent2D extent, protocol::ShadingMode mode = protocol::ShadingMode::lit)
+      : rig_(std::move(scene), camera, {.extent = extent, .settings = shown_as(mode)}),
         shader_(render::trace_gbuffer(rig_.plan(), with_host_kernels(rig_, false))),
         host_(render::trace_gbuffer(rig_.plan(), with_host_kernels(rig_, true))) {
     scene::Camera moved = camera;
@@ -55,6 +55,12 @@ class KernelComparison {
   }
 
  private:
+  static protocol::Settings shown_as(protocol::ShadingMode mode) {
+    protocol::Settings settings = without_indirect();
+    settings.view.shading = mode;
+    return settings;
+  }
+
   FrameRig rig_;
   render::GBuffer shader_, host_;
 };
@@ -74,6 +80,15 @@ TEST_F(GBufferKernel, MatchesShaders) {
       KernelComparison(scene, view_of(*scene, orthographic), {150, 100})
           .expect_equal(name + (", " + view));
     }
+  }
+}
+
+TEST_F(GBufferKernel, MatchesShadersInEveryShadingMode) {
+  const auto scene = textured_scene();
+  using enum protocol::ShadingMode;
+  for (const auto mode : {wireframe, clay, matcap, uv_checker, normals}) {
+    KernelComparison(scene, view_of(*scene, false), {150, 100}, mode)
+        .expect_equal(std::string(protocol::enum_name(mode)));
   }
 }
 

@@ -6,6 +6,7 @@
 #include "render/passes/gbuffer/frustum.hpp"
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
 #include "render/passes/section/section.hpp"
+#include "render/passes/shading/draw_shading.hpp"
 #include "render/resources/lights/light_table.hpp"
 #include "render/resources/moving_scene.hpp"
 
@@ -35,7 +36,7 @@ constexpr std::uint32_t least_layers = 16;
 
 bool draws_gbuffer_on_host(const gpu::FramePlan& plan, const FrameInputs& in) {
   using enum protocol::PrimaryVisibility;
-  if (!plan.uses_host_kernels() || has_section(in)) return false;
+  if (!plan.uses_host_kernels() || has_section(in) || changes_shading(in)) return false;
   if (in.settings.gbuffer.source != automatic) return in.settings.gbuffer.source == raster;
   const std::uint64_t pixels = std::uint64_t{plan.extent().width} * plan.extent().height;
   std::uint64_t triangles = 0;

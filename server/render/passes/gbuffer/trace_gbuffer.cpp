@@ -7,6 +7,7 @@
 #include "render/passes/formats.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/section/section.hpp"
+#include "render/passes/shading/draw_shading.hpp"
 #include "render/resources/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
@@ -62,7 +63,7 @@ bool rays_find_gbuffer_sooner(const gpu::DeviceReport& device, protocol::TracerK
 
 bool traces_gbuffer(const gpu::Device& device, const FrameInputs& in) {
   using enum protocol::PrimaryVisibility;
-  if (has_section(in)) return true;
+  if (has_section(in) || changes_shading(in)) return true;
   if (in.settings.gbuffer.source != automatic) return in.settings.gbuffer.source == rays;
   return rays_find_gbuffer_sooner(device.report(), in.tracer.kind());
 }
@@ -109,6 +110,7 @@ GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
       if (finds_caps) find_caps(plan, in, current, hits, caps);
       const bool last = round == last_round;
       store_hits(plan, in, {name, last, current, hits, previous_vertices, next}, gbuffer);
+      draw_shading(plan, in, current, hits, gbuffer);
     };
     // The first rays are there in every frame, and so is what they find: images that every frame
     // writes can be read after it.

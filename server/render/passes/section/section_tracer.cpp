@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "protocol/limits.hpp"
+#include "render/kernels/section/section.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "shaders/embedded.hpp"
 
@@ -27,10 +28,10 @@ void SectionTracer::cut(gpu::FramePlan& plan, const std::string& name,
             [&programs = programs_]() -> const gpu::ComputeProgram& {
               return programs.compute(shaders::section_rays);
             })
-      .read(rays.count)
-      .read_write(rays.rays)
+      .bind<kernels::SectionRaysBindings>({.count = rays.count, .rays = rays.rays})
       .constants([&section = section_] { return section_constants(section); })
-      .dispatch_indirect(rays.count, ray_groups_offset);
+      .dispatch_indirect(rays.count, ray_groups_offset)
+      .host(kernels::section_rays);
 }
 
 }  // namespace heliograph::render

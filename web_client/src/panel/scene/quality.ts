@@ -1,18 +1,9 @@
 // Three choices of quality, from the first look to the last image: groups of settings.
 
-import type { JsonObject } from "heliograph/json.ts";
-import type { SettingsStore } from "../../session/settings_store.ts";
-
-interface QualityLevel {
-  name: string;
-  label: string;
-  description: string;
-  /** null: the server's default. */
-  settings: JsonObject;
-}
+import type { SettingsPreset } from "./preset_chips.ts";
 
 /** All levels name the same settings, so that none depends on the one before. */
-export const qualityLevels: QualityLevel[] = [
+export const qualityLevels: SettingsPreset[] = [
   {
     name: "draft",
     label: "Draft",
@@ -44,8 +35,3 @@ export const qualityLevels: QualityLevel[] = [
     },
   },
 ];
-
-/** The level whose settings are all in effect; null with others. */
-export function currentQuality(store: SettingsStore): QualityLevel | null {
-  return qualityLevels.find(({ settings }) => store.matches(settings)) ?? null;
-}

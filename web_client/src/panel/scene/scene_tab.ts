@@ -14,9 +14,11 @@ import { createEnvironmentField } from "./environment_field.ts";
 import { createLightSection } from "./light_section.ts";
 import { createMaterialSection } from "./material_section.ts";
 import { createPartFields } from "./part_fields.ts";
-import { createQualityField } from "./quality_field.ts";
+import { createPresetChips } from "./preset_chips.ts";
+import { qualityLevels } from "./quality.ts";
 import { createScenePicker } from "./scene_picker.ts";
 import { createPlanesSection } from "./section_planes.ts";
+import { shadingModes } from "./shading_modes.ts";
 
 /** Groups of settings that are shown here instead of in the Settings tab. */
 export const appearanceGroups = ["exposure", "tone_map", "environment", "background"];
@@ -40,7 +42,8 @@ export function createSceneTab(
     element(
       "div",
       { class: "fields", "data-section": "scene" },
-      createQualityField(viewer),
+      createPresetChips(viewer, "Quality", qualityLevels),
+      createPresetChips(viewer, "Shading", shadingModes),
       ...createScenePicker(viewer, upload),
       facts,
       warnings,
