@@ -42,6 +42,15 @@ StoredFile read_file(const Statement& row) {
           .crc = static_cast<std::uint32_t>(row.integer(2))};
 }
 
+/// Before any scene is read: of each entry one camera.
+std::int64_t known_images(const std::vector<protocol::RenderRequest>& entries) {
+  std::int64_t images = 0;
+  for (const protocol::RenderRequest& entry : entries) {
+    images += std::int64_t{entry.turntable.value_or(entry.frames.value_or(1))};
+  }
+  return images;
+}
+
 bool is_unreserved(char c) {
   return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
          std::string_view("-._~/").find(c) != std::string_view::npos;
@@ -132,7 +141,7 @@ protocol::Result<std::string> JobStore::create(const protocol::JobCreate& reques
       .bind(4, text)
       .bind(5, static_cast<std::int64_t>(request.entries.size()))
       .bind(6, std::int64_t{request.priority})
-      .bind(7, static_cast<std::int64_t>(request.entries.size()))
+      .bind(7, known_images(request.entries))
       .bind(8, now)
       .bind(9, request.webhook)
       .run();

@@ -85,6 +85,7 @@ TEST(Section, LeavesFramesWithoutPlanesAsTheyWere) {
     return rig.accumulate(2).rgba;
   };
   RendererRig rig = section_rig({0.6f, 1.6f, 4.0f});
+  rig.apply(section_settings(protocol::ReferenceUse::off));
   const auto before = frame_of(rig);
   rig.renderer.set_section(front_half);
   EXPECT_NE(frame_of(rig), before);

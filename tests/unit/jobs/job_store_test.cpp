@@ -49,6 +49,15 @@ TEST_F(Store, JobsBeginByPriorityThenByAge) {
   EXPECT_FALSE(store.begin(5.0));
 }
 
+TEST_F(Store, ImagesOfTurntablesAndClipsAreKnownWhileTheyWait) {
+  JobStore store(file());
+  protocol::JobCreate create = request();
+  create.entries[0].turntable = 36;
+  const std::string id = *store.create(create, 1.0);
+  EXPECT_EQ(store.find(id)->images, 37u);
+  EXPECT_EQ(store.find(id)->entries, 2u);
+}
+
 TEST_F(Store, WhatWasRunningIsQueuedAgainWithItsFiles) {
   std::string id;
   {
