@@ -1,6 +1,7 @@
 #include "stream/video/video_file.hpp"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <unistd.h>
 #include <webp/decode.h>
 #include <webp/demux.h>
@@ -34,19 +35,45 @@ ImageView view_of(const std::vector<std::uint8_t>& rgba) {
   return {.width = width, .height = height, .rgba = rgba};
 }
 
-std::string written_video(VideoContainer container, double fps) {
-  const std::filesystem::path file =
-      std::filesystem::path(testing::TempDir()) / ("video" + std::to_string(getpid()));
-  VideoFile video(file, {.width = width, .height = height, .fps = fps, .container = container});
-  for (int i = 0; i < frame_count; ++i) {
-    const auto image = plain_image(static_cast<std::uint8_t>(40 * i));
-    video.add(view_of(image));
-  }
+std::filesystem::path video_path() {
+  return std::filesystem::path(testing::TempDir()) / ("video" + std::to_string(getpid()));
+}
+
+std::string finished(VideoFile& video, const std::filesystem::path& file) {
   video.finish();
   std::ifstream in(file, std::ios::binary);
   std::string bytes(std::istreambuf_iterator<char>(in), {});
   std::filesystem::remove(file);
   return bytes;
+}
+
+std::string written_video(VideoContainer container, double fps) {
+  const std::filesystem::path file = video_path();
+  VideoFile video(file, {.width = width, .height = height, .fps = fps, .container = container});
+  for (int i = 0; i < frame_count; ++i) {
+    const auto image = plain_image(static_cast<std::uint8_t>(40 * i));
+    video.add(view_of(image));
+  }
+  return finished(video, file);
+}
+
+/// A bright square that moves over a gradient.
+std::string written_motion(VideoContainer container) {
+  constexpr std::uint32_t side = 64;
+  const std::filesystem::path file = video_path();
+  VideoFile video(file, {.width = side, .height = side, .fps = 30, .container = container});
+  std::vector<std::uint8_t> rgba(4 * side * side, 255);
+  for (std::uint32_t frame = 0; frame < 12; ++frame) {
+    for (std::uint32_t i = 0; i < side * side; ++i) {
+      const std::uint32_t x = i % side, y = i / side;
+      const bool inside = x - 3 * frame < 20 && y - 2 * frame < 24;
+      rgba[4 * i] = static_cast<std::uint8_t>(inside ? 240 - x : 2 * x);
+      rgba[4 * i + 1] = static_cast<std::uint8_t>(inside ? 200 : 3 * y);
+      rgba[4 * i + 2] = static_cast<std::uint8_t>(inside ? 60 : (x * y) / 16);
+    }
+    video.add({.width = side, .height = side, .rgba = rgba});
+  }
+  return finished(video, file);
 }
 
 TEST(VideoFile, AnMp4CanBePlayedFromItsBeginning) {
@@ -59,6 +86,18 @@ TEST(VideoFile, AnMp4CanBePlayedFromItsBeginning) {
 TEST(VideoFile, TheSameFramesGiveTheSameBytes) {
   for (const VideoContainer container : {VideoContainer::mp4, VideoContainer::webm}) {
     EXPECT_EQ(written_video(container, 29.97), written_video(container, 29.97));
+  }
+}
+
+// A process that has rendered other scenes has other memory than a new one.
+TEST(VideoFile, BytesDoNotDependOnWhatMemoryHeldBefore) {
+  for (const VideoContainer container : {VideoContainer::mp4, VideoContainer::webm}) {
+    const std::string expected = written_motion(container);
+    for (const int contents : {85, 170, 255}) {
+      mallopt(M_PERTURB, contents);
+      EXPECT_TRUE(written_motion(container) == expected) << contents;
+    }
+    mallopt(M_PERTURB, 0);
   }
 }
 
