@@ -22,7 +22,9 @@ struct ShadingConstants {
 };
 
 /// What of a number is positive.
-SHARED_FUNCTION float positive_part(float value) { return value > 0.0f ? value : 0.0f; }
+SHARED_FUNCTION float positive_part(float value) {
+  return value > 0.0f ? value : 0.0f;
+}
 
 /// Linear colour of a grey ball in a studio at the normal `n`: x right, y up, z toward the eye.
 SHARED_FUNCTION vec3 matcap_color(vec3 n) {
@@ -57,9 +59,9 @@ SHARED_FUNCTION float line_distance(vec3 a, vec3 b) {
   return size > 0.0f ? length(cross(a, b)) / size : 0.0f;
 }
 
-/// Whether an edge of a triangle covers a point of it. Corners are relative to the point, in metres,
-/// and seen along the unit vector `direction`; a pixel there is `pixel` metres wide. Edges of small
-/// triangles are thinner, so that some of the surface is left between them.
+/// Whether an edge of a triangle covers a point of it. Corners are relative to the point, in
+/// metres, and seen along the unit vector `direction`; a pixel there is `pixel` metres wide. Edges
+/// of small triangles are thinner, so that some of the surface is left between them.
 SHARED_FUNCTION bool is_on_edge(vec3 a, vec3 b, vec3 c, vec3 direction, float pixel) {
   a -= direction * dot(a, direction);
   b -= direction * dot(b, direction);

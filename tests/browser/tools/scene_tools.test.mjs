@@ -1,7 +1,7 @@
 // Scene tools: lights, materials, picking, pixel values.
 
 import assert from "node:assert/strict";
-import { doubleClick, eventually, openTab, screenshot } from "../harness/browser.mjs";
+import { doubleClick, eventually, openTab, screenshot, settle } from "../harness/browser.mjs";
 import { Stage } from "../harness/stage.mjs";
 
 const stage = new Stage({
@@ -116,4 +116,34 @@ stage.test("a double click focuses on the surface", async () => {
     "the point as target",
     40_000,
   );
+});
+
+stage.test("shading modes are chosen by click and key, and undone", async () => {
+  const { page } = await stage.sharedViewer();
+  await openTab(page, "scene");
+  const modes = page.getByRole("group", { name: "Shading" });
+  const chosen = () => modes.locator('[aria-pressed="true"]').innerText();
+  const mode = async () => (await stage.server.call("settings.get")).settings.view.shading;
+  assert.equal(await chosen(), "Lit");
+  for (const [label, value] of [
+    ["Wireframe", "wireframe"],
+    ["Clay", "clay"],
+    ["Matcap", "matcap"],
+    ["UV", "uv_checker"],
+    ["Normals", "normals"],
+  ]) {
+    await modes.getByRole("button", { name: label }).click();
+    await eventually(async () => (await mode()) === value, `the mode ${value}`);
+    assert.equal(await chosen(), label);
+    await settle(page, stage.server);
+    await screenshot(page, `shading_${value}`);
+  }
+  await modes.getByRole("button", { name: "Clay" }).focus();
+  await page.keyboard.press("Enter");
+  await eventually(async () => (await mode()) === "clay", "clay, by key");
+  await page.getByRole("button", { name: /^Undo/ }).click();
+  // Changes of one setting that follow each other are one step.
+  await eventually(async () => (await mode()) !== "clay", "what was before");
+  await modes.getByRole("button", { name: "Lit" }).click();
+  await eventually(async () => (await mode()) === "lit", "the lit scene");
 });
