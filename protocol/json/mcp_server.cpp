@@ -62,8 +62,7 @@ json list_tools() {
 json initialize(const json& params, std::string_view version) {
   std::string revision(revisions.front());
   const auto asked = params.find("protocolVersion");
-  if (asked != params.end() && asked->is_string() &&
-      std::ranges::find(revisions, asked->get<std::string>()) != revisions.end()) {
+  if (asked != params.end() && asked->is_string() && McpServer::knows(asked->get<std::string>())) {
     revision = *asked;
   }
   return {{"protocolVersion", revision},
@@ -121,6 +120,10 @@ std::string failure(const json& id, int code, const std::string& reason) {
 }
 
 }  // namespace
+
+bool McpServer::knows(std::string_view revision) {
+  return std::ranges::find(revisions, revision) != revisions.end();
+}
 
 void McpServer::handle(std::string_view text, const CallContext& context,
                        Dispatcher::Reply reply) const {

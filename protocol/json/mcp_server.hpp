@@ -17,6 +17,9 @@ class McpServer {
   McpServer(const Dispatcher& dispatcher, std::string_view version)
       : dispatcher_(dispatcher), version_(version) {}
 
+  /// Whether a revision of the protocol, such as "2025-06-18", is known.
+  static bool knows(std::string_view revision);
+
   /// Handles one message. `reply` gets the response text, once; empty if there is none. It may be
   /// called later, on another thread. Does not throw.
   void handle(std::string_view text, const CallContext& context, Dispatcher::Reply reply) const;

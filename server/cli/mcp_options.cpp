@@ -12,8 +12,9 @@ constexpr const char* mcp_examples = R"text(Examples:
 }  // namespace
 
 CLI::App* add_mcp(CLI::App& app, McpOptions& options) {
-  CLI::App* command = app.add_subcommand(
-      "mcp", "Serve the methods to an agent as tools of the Model Context Protocol, on stdio");
+  CLI::App* command = app.add_subcommand("mcp",
+                                         "Serve the methods to an agent as tools of the Model "
+                                         "Context Protocol, on stdio; a server does so at /mcp");
   constexpr const char* group = "Scenes";
   command->add_option("--scene", options.scene, "Scene to load at the start [the demo scene]")
       ->type_name("NAME")

@@ -99,6 +99,14 @@ std::string frame_ancestors(const std::vector<std::string>& allowed) {
   return value;
 }
 
+protocol::CallContext call_context(const HttpRequest& request, Role role,
+                                   const Router::Pending& pending) {
+  return {.viewer = {},
+          .session = session_of(request),
+          .view_only = role == Role::view,
+          .answer = pending};
+}
+
 Headers protecting_headers(const RouterOptions& options) {
   return {
       {"Content-Security-Policy",
@@ -155,7 +163,8 @@ Router::Router(session::SessionHost& host, const AccessControl& access, const Tr
       access_(access),
       traffic_(traffic),
       options_(options),
-      headers_(protecting_headers(options)) {}
+      headers_(protecting_headers(options)),
+      mcp_(host.dispatcher(), HELIOGRAPH_VERSION) {}
 
 /// The module that shows our page in one of another origin: code that is no secret, for origins
 /// that may embed the page. It comes with an Origin header and without a cookie.
@@ -200,6 +209,10 @@ void Router::handle(const HttpRequest& request, const Pending& pending, Reply re
   if (request.path == "/rpc") {
     if (request.method != "POST") return reply(method_not_allowed("POST"));
     return call(request, admission.role, pending, std::move(reply));
+  }
+  if (request.path == "/mcp") {
+    if (request.method != "POST") return reply(method_not_allowed("POST"));
+    return call_tool(request, admission.role, pending, std::move(reply));
   }
   if (is_job_path(request.path)) {
     return reply(answer_job(request, host_.jobs(), admission.role));
@@ -291,12 +304,24 @@ HttpResponse Router::metrics() const {
 
 void Router::call(const HttpRequest& request, Role role, const Pending& pending,
                   Reply reply) const {
-  const protocol::CallContext context{.viewer = {},
-                                      .session = session_of(request),
-                                      .view_only = role == Role::view,
-                                      .answer = pending};
+  const auto context = call_context(request, role, pending);
   host_.dispatcher().handle(request.body, context, [reply = std::move(reply)](std::string answer) {
     if (answer.empty()) return reply({.status = 204, .content_type = {}});
+    reply(json_response(std::move(answer)));
+  });
+}
+
+/// The Model Context Protocol's transport over HTTP, in which each message is a request and each
+/// answer its response: nothing needs a stream or a session of the transport.
+void Router::call_tool(const HttpRequest& request, Role role, const Pending& pending,
+                       Reply reply) const {
+  const std::string_view revision = request.header("mcp-protocol-version");
+  if (!revision.empty() && !protocol::McpServer::knows(revision)) {
+    return reply(text_response(400, "MCP-Protocol-Version: is not a known revision."));
+  }
+  const auto context = call_context(request, role, pending);
+  mcp_.handle(request.body, context, [reply = std::move(reply)](std::string answer) {
+    if (answer.empty()) return reply({.status = 202, .content_type = {}});
     reply(json_response(std::move(answer)));
   });
 }

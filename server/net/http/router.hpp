@@ -14,6 +14,7 @@
 #include "net/http/http_message.hpp"
 #include "net/http/metrics.hpp"
 #include "net/security/access_control.hpp"
+#include "protocol/json/mcp_server.hpp"
 #include "protocol/json/pending_answer.hpp"
 #include "session/library/upload_store.hpp"
 #include "session/session_host.hpp"
@@ -68,6 +69,7 @@ class Router {
   std::optional<HttpResponse> health(const HttpRequest& request) const;
   HttpResponse metrics() const;
   void call(const HttpRequest& request, Role role, const Pending& pending, Reply reply) const;
+  void call_tool(const HttpRequest& request, Role role, const Pending& pending, Reply reply) const;
   void environment_thumbnail(std::string_view file, Reply reply) const;
   HttpResponse scene_thumbnail(std::string_view scene) const;
   void image(const HttpRequest& request, const ImageAddress& address, Role role,
@@ -78,6 +80,7 @@ class Router {
   const Traffic& traffic_;
   const RouterOptions options_;
   const Headers headers_;
+  const protocol::McpServer mcp_;
   const std::chrono::steady_clock::time_point started_ = std::chrono::steady_clock::now();
   std::atomic<bool> draining_ = false;
 };

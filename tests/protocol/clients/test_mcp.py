@@ -1,4 +1,4 @@
-"""An agent's view of the server: the Model Context Protocol on stdio."""
+"""An agent's view of the server: the Model Context Protocol on stdio and over HTTP."""
 
 import base64
 import copy
@@ -8,11 +8,15 @@ import os
 import subprocess
 import tempfile
 import unittest
+import urllib.error
+import urllib.request
 
 from harness.images import decode_png
 from harness.models import Model
+from harness.server import Server
 
 DEFECT = "part 2"
+CONTROL, VIEW = "control-token-of-the-test", "view-token-of-the-test"
 
 
 def scene_with_a_defect(path):
@@ -163,6 +167,69 @@ class ModelContextProtocol(unittest.TestCase):
             self.agent.send(text)
             self.assertIn("error", self.agent.answer())
         self.assertEqual(self.agent.ask("ping")["result"], {})
+
+
+class OverHttp(unittest.TestCase):
+    """The same tools of a server that others use, too."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        scene_with_a_defect(os.path.join(cls.folder.name, "parts.glb"))
+        cls.addClassCleanup(cls.folder.cleanup)
+        cls.server = Server("--scene", "parts", "--token", CONTROL, "--view-token", VIEW,
+                            scenes=cls.folder.name)
+        cls.addClassCleanup(cls.server.__exit__)
+
+    def post(self, message, token=CONTROL, **headers):
+        request = urllib.request.Request(
+            self.server.url + "mcp", data=json.dumps(message).encode(), method="POST",
+            headers={"Content-Type": "application/json", "Authorization": f"Bearer {token}",
+                     "Accept": "application/json, text/event-stream",
+                     **{name.replace("_", "-"): value for name, value in headers.items()}})
+        with urllib.request.urlopen(request, timeout=60) as answer:
+            return answer.status, answer.headers.get_content_type(), answer.read()
+
+    def refused(self, message, **options):
+        with self.assertRaises(urllib.error.HTTPError) as caught:
+            self.post(message, **options)
+        caught.exception.close()
+        return caught.exception.code
+
+    def call(self, tool, token=CONTROL, **arguments):
+        _, kind, body = self.post({"jsonrpc": "2.0", "id": 7, "method": "tools/call",
+                                   "params": {"name": tool, "arguments": arguments}}, token)
+        self.assertEqual(kind, "application/json")
+        return json.loads(body)["result"]
+
+    def test_a_client_finds_a_planted_defect_by_looking(self):
+        self.call("camera_fit")
+        content = self.call("frame_capture", format="png")["content"]
+        image = next(part for part in content if part["type"] == "image")
+        _, x, y = reddest(decode_png(base64.b64decode(image["data"])))
+        node = json.loads(self.call("scene_pick", x=x, y=y)["content"][-1]["text"])["node"]
+        info = self.call("nodes_info", nodes=[node])["content"][-1]["text"]
+        self.assertEqual(json.loads(info)["names"], [DEFECT])
+
+    def test_messages_and_their_answers_follow_the_transport(self):
+        ping = {"jsonrpc": "2.0", "id": 1, "method": "ping"}
+        status, _, body = self.post({"jsonrpc": "2.0", "method": "notifications/initialized"})
+        self.assertEqual((status, body), (202, b""))
+        self.assertEqual(self.post(ping, MCP_Protocol_Version="2025-06-18")[0], 200)
+        self.assertEqual(self.refused(ping, MCP_Protocol_Version="1999-01-01"), 400)
+        self.assertEqual(self.refused(ping, Origin="https://elsewhere.example"), 403)
+        self.assertEqual(self.refused(ping, token="wrong"), 401)
+        request = urllib.request.Request(self.server.url + "mcp",
+                                         headers={"Authorization": f"Bearer {CONTROL}"})
+        with self.assertRaises(urllib.error.HTTPError) as caught:
+            urllib.request.urlopen(request, timeout=60)
+        self.assertEqual((caught.exception.code, caught.exception.headers["Allow"]), (405, "POST"))
+        caught.exception.close()
+
+    def test_a_view_token_looks_and_changes_nothing(self):
+        self.assertFalse(self.call("scene_info", token=VIEW)["isError"])
+        refused = self.call("camera_fit", token=VIEW)
+        self.assertTrue(refused["isError"])
 
 
 if __name__ == "__main__":
