@@ -14,6 +14,8 @@ const presetLabels: Record<string, string> = {
 const settingLabels: Record<string, string> = {
   "exposure.compensation": "Exposure (EV)",
   "environment.separate_sun": "Sun as a light",
+  "background.color": "Colour",
+  "background.upper_color": "Upper colour",
 };
 
 export const presetLabel = (name: string): string => presetLabels[name] ?? name;
