@@ -55,9 +55,12 @@ struct Pipe {
   const struct sched_param unused {};
   sched_setscheduler(0, SCHED_BATCH, &unused);
   setpriority(PRIO_PROCESS, 0, lowest_priority);
-  sigset_t none;
-  sigemptyset(&none);
-  sigprocmask(SIG_SETMASK, &none, nullptr);
+  // Waits until the renderer handles it: by default it is lost where the server is alone in its
+  // session, as services are.
+  sigset_t handled_later;
+  sigemptyset(&handled_later);
+  sigaddset(&handled_later, SIGTSTP);
+  sigprocmask(SIG_SETMASK, &handled_later, nullptr);
   const int input = open("/dev/null", O_RDONLY);
   dup2(input, STDIN_FILENO);
   dup2(output, STDOUT_FILENO);

@@ -24,6 +24,10 @@ void count_stopped_time() {
   action.sa_handler = stop;
   action.sa_flags = SA_RESTART;
   sigaction(SIGTSTP, &action, nullptr);
+  sigset_t handled;
+  sigemptyset(&handled);
+  sigaddset(&handled, SIGTSTP);
+  pthread_sigmask(SIG_UNBLOCK, &handled, nullptr);
 }
 
 std::chrono::nanoseconds stopped_time() {

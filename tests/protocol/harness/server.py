@@ -29,9 +29,10 @@ class Server:
     """A running server on a free port of the loopback interface."""
 
     def __init__(self, *arguments, scenes=None, environment=None, certificate=None, early=False,
-                 binary=None):
+                 binary=None, new_session=False):
         """`certificate` is the one to trust where the server speaks TLS; `early`: not to wait for
-        the first frame, only for the listener; `binary`: another program than that of all tests."""
+        the first frame, only for the listener; `binary`: another program than that of all tests;
+        `new_session`: alone in its session, as services are."""
         self.errors_seen = set()  # (method, code) of answers
         self.headers = {}  # that every request carries, such as a token's
         self.tls = ssl.create_default_context(cafile=certificate) if certificate else None
@@ -44,7 +45,7 @@ class Server:
         if os.environ.get("HELIOGRAPH_TEST_PRELOAD"):
             surroundings["LD_PRELOAD"] = os.environ["HELIOGRAPH_TEST_PRELOAD"]
         self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=self.log, text=True,
-                                        env=surroundings)
+                                        env=surroundings, start_new_session=new_session)
         try:
             self.url = self._wait_for_listener(port) if early else self._wait_for_address()
         except Exception:

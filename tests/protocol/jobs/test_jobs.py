@@ -255,6 +255,22 @@ class RenderersBesideViewers(ServerTestCase):
     def test_a_job_waits_while_an_image_moves(self):
         asyncio.run(self.move_beside_a_job())
 
+    def test_a_job_that_begins_while_an_image_moves_waits_at_once(self):
+        asyncio.run(self.begin_beside_movement())
+
+    async def begin_beside_movement(self):
+        with tempfile.TemporaryDirectory() as folder, \
+                Server("--jobs", folder, new_session=True) as server:
+            client = Client(server)
+            async with Viewer(server) as viewer, viewer.moving():
+                await viewer.next_frame()
+                job = await asyncio.to_thread(client.create, slow())
+                await asyncio.to_thread(client.wait, job, "running")
+                await self.wait_for_renderer(stopped=True, server=server)
+            await self.wait_for_renderer(stopped=False, server=server)
+            client.request("DELETE", "/api/v1/jobs/" + job["job"])
+            await asyncio.to_thread(client.wait, job, timeout=10)
+
     async def move_beside_a_job(self):
         client = Client(self.server)
         job = client.create(slow())
@@ -270,9 +286,9 @@ class RenderersBesideViewers(ServerTestCase):
                 ended = await asyncio.to_thread(client.wait, job, timeout=10)
                 self.assertEqual(ended["state"], "canceled")
 
-    async def wait_for_renderer(self, stopped):
+    async def wait_for_renderer(self, stopped, server=None):
         deadline = time.monotonic() + 15
-        while (states := renderer_states(self.server.process.pid)) != [stopped]:
+        while (states := renderer_states((server or self.server).process.pid)) != [stopped]:
             self.assertLess(time.monotonic(), deadline, f"renderers are stopped: {states}")
             await asyncio.sleep(0.05)
 
