@@ -10,9 +10,9 @@
 
 #include "render/resources/lights/light_table.hpp"
 #include "render/resources/placement.hpp"
+#include "render/resources/plain_material.hpp"
 #include "scene/animation/deform.hpp"
 #include "scene/gltf/nodes/lights.hpp"
-#include "shaders/shared/shading.h"
 
 namespace heliograph::render {
 namespace {
@@ -31,31 +31,6 @@ std::vector<shared::Vertex> all_vertices(const scene::Scene& scene) {
     vertices.insert(vertices.end(), mesh.vertices.begin(), mesh.vertices.end());
   }
   return vertices;
-}
-
-/// What set_plain() makes of a material: holes stay.
-shared::Material plain_material(const shared::Material& material) {
-  constexpr std::uint32_t kept = shared::material_alpha_mask | shared::material_double_sided;
-  shared::Material plain = material;
-  plain.flags &= kept;
-  const bool has_holes = (plain.flags & shared::material_alpha_mask) != 0;
-  plain.base_color =
-      glm::vec4(glm::vec3(shared::clay_albedo), has_holes ? plain.base_color.w : 1.0f);
-  plain.emissive = glm::vec3(0.0f);
-  plain.metallic = 0.0f;
-  plain.roughness = shared::clay_roughness;
-  plain.ior = 1.5f;
-  plain.layer = 0;
-  if (!has_holes) {
-    plain.passing = 0.0f;
-    plain.alpha_mask = shared::no_texture;
-    plain.base_color_texture.texture = shared::no_texture;
-  }
-  for (shared::TextureSlot* const slot : {&plain.metallic_roughness_texture, &plain.normal_texture,
-                                          &plain.occlusion_texture, &plain.emissive_texture}) {
-    slot->texture = shared::no_texture;
-  }
-  return plain;
 }
 
 }  // namespace

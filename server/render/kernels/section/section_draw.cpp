@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <glm/gtc/packing.hpp>
 
@@ -8,10 +7,6 @@
 
 namespace heliograph::render::kernels {
 namespace {
-
-std::uint32_t fractions(const glm::vec4& values) {
-  return glm::packUnorm4x8(values);
-}
 
 /// Where the rays of pixels meet planes.
 class CapView {
@@ -27,8 +22,8 @@ class CapView {
     const glm::vec2 normal = octahedral_encode(glm::vec3(plane));
     texel<glm::vec4>(job_.normals, x, y) = {normal, normal};
     texel<std::uint32_t>(job_.base_color, x, y) =
-        fractions({glm::sqrt(job_.constants.cap_color), 1.0f});
-    texel<std::uint32_t>(job_.surface, x, y) = fractions({1.0f, 0.0f, 1.0f, 0.0f});
+        glm::packUnorm4x8(glm::vec4(glm::sqrt(job_.constants.cap_color), 1.0f));
+    texel<std::uint32_t>(job_.surface, x, y) = glm::packUnorm4x8(glm::vec4(1.0f, 0.0f, 1.0f, 0.0f));
     texel<glm::vec4>(job_.motion, x, y) = motion_of(position, view_z);
     texel<std::uint64_t>(job_.emissive, x, y) = glm::packHalf4x16({0.0f, 0.0f, 0.0f, 1.0f});
     texel<glm::vec2>(job_.depth_slope, x, y) = glm::clamp(slope, -view_z, view_z);

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include "render/kernels/section/section.hpp"
 
 namespace heliograph::render::kernels {
