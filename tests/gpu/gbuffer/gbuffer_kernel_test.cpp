@@ -38,20 +38,7 @@ class KernelComparison {
   FrameRig& rig() { return rig_; }
 
   void expect_equal(const std::string& which) const {
-    using render::GBuffer;
-    const std::pair<const char*, gpu::ImageRef GBuffer::*> images[] = {
-        {"normals", &GBuffer::normals},   {"base color", &GBuffer::base_color},
-        {"surface", &GBuffer::surface},   {"motion", &GBuffer::motion},
-        {"emissive", &GBuffer::emissive}, {"depth slope", &GBuffer::depth_slope},
-        {"instance", &GBuffer::instance}};
-    for (const auto& [name, image] : images) {
-      const ErrorStatistics error = compare(rig_.read(shader_.*image), rig_.read(host_.*image));
-      const std::string what = which + ": " + name;
-      EXPECT_LT(error.mean, 4e-4) << what;
-      // A ray that grazes an edge may hit the adjacent triangle; a texel may round to the next
-      // 1/255.
-      EXPECT_LT(error.outliers, 2e-3) << what;
-    }
+    expect_same_gbuffer(rig_, shader_, host_, which);
   }
 
  private:

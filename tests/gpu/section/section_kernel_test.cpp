@@ -43,17 +43,7 @@ TEST(SectionKernel, CutsAndClosesAsShadersDo) {
     moved.eye += glm::vec3(0.05f, -0.02f, 0.03f);
     rig.set_view(moved, 3);
     rig.run();
-    using render::GBuffer;
-    const std::pair<const char*, gpu::ImageRef GBuffer::*> images[] = {
-        {"normals", &GBuffer::normals},   {"base color", &GBuffer::base_color},
-        {"surface", &GBuffer::surface},   {"motion", &GBuffer::motion},
-        {"emissive", &GBuffer::emissive}, {"depth slope", &GBuffer::depth_slope},
-        {"instance", &GBuffer::instance}};
-    for (const auto& [name, image] : images) {
-      const ErrorStatistics error = compare(rig.read(shader.*image), rig.read(host.*image));
-      EXPECT_LT(error.mean, 4e-4) << name << orthographic;
-      EXPECT_LT(error.outliers, 3e-3) << name << orthographic;
-    }
+    expect_same_gbuffer(rig, shader, host, orthographic ? "orthographic" : "perspective");
     // Unlit pixels are caps: both planes have some.
     const render::FloatImage kinds = rig.read(host.surface), normals = rig.read(host.normals);
     std::set<std::pair<float, float>> caps;

@@ -117,6 +117,22 @@ ErrorStatistics compare(const render::FloatImage& expected, const render::FloatI
   return {result.mean / count, result.max, result.outliers / count, result.magnitude / count};
 }
 
+void expect_same_gbuffer(const FrameRig& rig, const render::GBuffer& expected,
+                         const render::GBuffer& actual, const std::string& which) {
+  using render::GBuffer;
+  const std::pair<const char*, gpu::ImageRef GBuffer::*> images[] = {
+      {"normals", &GBuffer::normals},   {"base color", &GBuffer::base_color},
+      {"surface", &GBuffer::surface},   {"motion", &GBuffer::motion},
+      {"emissive", &GBuffer::emissive}, {"depth slope", &GBuffer::depth_slope},
+      {"instance", &GBuffer::instance}};
+  for (const auto& [name, image] : images) {
+    const ErrorStatistics error = compare(rig.read(expected.*image), rig.read(actual.*image));
+    const std::string what = which + ": " + name;
+    EXPECT_LT(error.mean, 4e-4) << what;
+    EXPECT_LT(error.outliers, 2e-3) << what;
+  }
+}
+
 void expect_faster(FrameRig& rig, const std::set<std::string>& passes, double least) {
   using Clock = std::chrono::steady_clock;
   rig.run();

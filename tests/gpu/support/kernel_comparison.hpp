@@ -43,6 +43,11 @@ struct ErrorStatistics {
 };
 ErrorStatistics compare(const render::FloatImage& expected, const render::FloatImage& actual);
 
+/// Expects two G-buffers of one plan to be the same but for samples on edges, which may belong to
+/// either triangle, and for texels that round to the next 1/255.
+void expect_same_gbuffer(const FrameRig& rig, const render::GBuffer& expected,
+                         const render::GBuffer& actual, const std::string& which);
+
 /// Prints by what factor the device passes are slower than the host kernels of `passes`, and
 /// expects at least `least`. Minimum of several frames; the device is timed by the wall clock,
 /// because GPU timestamps do not advance in some drivers.
