@@ -2,6 +2,7 @@
 #include <glm/gtc/packing.hpp>
 
 #include "render/api/octahedral.hpp"
+#include "render/kernels/common/pixel_rays.hpp"
 #include "render/kernels/common/tile.hpp"
 #include "render/kernels/section/section.hpp"
 
@@ -11,7 +12,7 @@ namespace {
 /// Where the rays of pixels meet planes.
 class CapView {
  public:
-  explicit CapView(const SectionDrawJob& job) : job_(job), frame_(job.frame) {}
+  explicit CapView(const SectionDrawJob& job) : job_(job), frame_(job.frame), rays_(job.frame) {}
 
   void draw(int x, int y, const SectionCap& cap) const {
     const glm::vec4& plane = job_.constants.planes[cap.x - 1];
@@ -37,19 +38,12 @@ class CapView {
   }
 
   glm::vec3 point_on(const glm::vec4& plane, int x, int y) const {
-    const glm::vec2 ndc = (glm::vec2(x, y) + 0.5f) / glm::vec2(frame_.extent) * 2.0f - 1.0f;
-    const glm::vec4& u = frame_.unproject;
-    const glm::vec2 slope = ndc * glm::vec2(u.x, u.y) + glm::vec2(u.z, u.w);
-    const bool orthographic = (frame_.flags & shared::frame_orthographic) != 0;
-    const glm::vec3 away = orthographic ? glm::vec3(0.0f, 0.0f, -1.0f) : glm::vec3(slope, -1.0f);
-    const glm::vec3 direction = glm::normalize(glm::mat3(frame_.inverse_view) * away);
-    const glm::vec3 origin = orthographic
-                                 ? glm::vec3(frame_.inverse_view * glm::vec4(slope, 0.0f, 1.0f))
-                                 : glm::vec3(frame_.eye);
-    const float rise = glm::dot(glm::vec3(plane), direction);
+    const PixelRay ray = rays_.through(x, y);
+    const glm::vec3 normal(plane), direction = glm::normalize(ray.direction);
+    const float rise = glm::dot(normal, direction);
     const float t =
-        (plane.w - glm::dot(glm::vec3(plane), origin)) / (std::abs(rise) < 1e-6f ? 1e-6f : rise);
-    return origin + t * direction;
+        (plane.w - glm::dot(normal, ray.origin)) / (std::abs(rise) < 1e-6f ? 1e-6f : rise);
+    return ray.origin + t * direction;
   }
 
   float view_z_of(const glm::vec3& position) const {
@@ -66,6 +60,7 @@ class CapView {
 
   const SectionDrawJob& job_;
   const shared::FrameConstants& frame_;
+  PixelRays rays_;
 };
 
 }  // namespace

@@ -1,3 +1,4 @@
+#include "render/kernels/common/met_triangle.hpp"
 #include "render/kernels/section/section.hpp"
 
 namespace heliograph::render::kernels {
@@ -23,19 +24,10 @@ Entrance entrance(const shared::SectionConstants& section, const shared::Ray& ra
 
 /// Whether the ray has met the back of a face that has no back.
 bool ends_inside(const SceneView& scene, const shared::Hit& hit, const glm::vec3& direction) {
-  const shared::Instance& instance = scene.instances[hit.instance];
-  const shared::Mesh& mesh = scene.meshes[instance.mesh];
-  const std::uint32_t flags = scene.materials[mesh.material].flags;
+  const MetTriangle triangle = met_triangle(scene, hit);
+  const std::uint32_t flags = scene.materials[triangle.material].flags;
   if (flags & (shared::material_double_sided | shared::material_alpha_blend)) return false;
-  const std::uint32_t* const corners = scene.indices + mesh.first_index + 3 * hit.triangle;
-  const auto corner = [&](int i) {
-    return scene.vertices[mesh.first_vertex + corners[i]].position;
-  };
-  const glm::mat3 world(instance.world);
-  const glm::vec3 front =
-      glm::cross(world * (corner(1) - corner(0)), world * (corner(2) - corner(0)));
-  const bool flipped = (instance.flags & shared::instance_flipped) != 0;
-  return glm::dot(front, direction) * (flipped ? -1.0f : 1.0f) > 0.0f;
+  return glm::dot(triangle.front(), direction) > 0.0f;
 }
 
 SectionCap find_cap(const SectionFindJob& job, const shared::Ray& ray, const shared::Hit& hit) {

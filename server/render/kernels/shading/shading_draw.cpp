@@ -4,18 +4,10 @@
 #include <glm/gtc/packing.hpp>
 
 #include "render/api/octahedral.hpp"
+#include "render/kernels/common/met_triangle.hpp"
 
 namespace heliograph::render::kernels {
 namespace {
-
-/// A triangle that a ray has met.
-struct MetTriangle {
-  const shared::Vertex& a;
-  const shared::Vertex& b;
-  const shared::Vertex& c;
-  glm::vec3 weights;
-  glm::mat3 world;
-};
 
 class Shading {
  public:
@@ -38,19 +30,9 @@ class Shading {
     return image.row<Texel>(y)[x];
   }
 
-  MetTriangle triangle(const shared::Hit& hit) const {
-    const shared::Instance& instance = job_.scene.instances[hit.instance];
-    const shared::Mesh& mesh = job_.scene.meshes[instance.mesh];
-    const std::uint32_t* const corners = job_.scene.indices + mesh.first_index + 3 * hit.triangle;
-    const shared::Vertex* const vertices = job_.scene.vertices + mesh.first_vertex;
-    return {vertices[corners[0]], vertices[corners[1]], vertices[corners[2]],
-            glm::vec3(1.0f - hit.u - hit.v, hit.u, hit.v), glm::mat3(instance.world)};
-  }
-
   bool shows_edge(const shared::Ray& ray, const shared::Hit& hit) const {
-    const MetTriangle t = triangle(hit);
-    const glm::vec3 at =
-        t.a.position * t.weights.x + t.b.position * t.weights.y + t.c.position * t.weights.z;
+    const MetTriangle t = met_triangle(job_.scene, hit);
+    const glm::vec3 at = t.position();
     const glm::vec3 position = ray.origin + hit.t * ray.direction;
     const float view_z = -(job_.frame.view * glm::vec4(position, 1.0f)).z;
     return shared::is_on_edge(t.world * (t.a.position - at), t.world * (t.b.position - at),
@@ -84,9 +66,7 @@ class Shading {
   glm::vec3 flat_color(std::uint32_t x, std::uint32_t y, const shared::Ray& ray,
                        const shared::Hit& hit) const {
     if (mode_ == shared::shading_uv_checker) {
-      const MetTriangle t = triangle(hit);
-      return shared::uv_checker_color(t.a.uv0 * t.weights.x + t.b.uv0 * t.weights.y +
-                                      t.c.uv0 * t.weights.z);
+      return shared::uv_checker_color(met_triangle(job_.scene, hit).uv());
     }
     const auto& stored = texel<const glm::vec4>(job_.normals, x, y);
     const glm::vec3 normal = octahedral_decode(glm::vec2(stored));
