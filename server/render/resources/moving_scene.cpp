@@ -324,15 +324,21 @@ bool MovingScene::set_lights(std::span<const shared::Light> lights) {
 }
 
 bool MovingScene::set_materials(std::span<const shared::Material> materials) {
-  chosen_materials_.assign(materials.begin(), materials.end());
-  return plain_ ? false : replace_materials(materials);
+  if (!hidden_materials_) return replace_materials(materials);
+  hidden_materials_->assign(materials.begin(), materials.end());
+  return false;
 }
 
 void MovingScene::set_plain(bool plain) {
-  if (std::exchange(plain_, plain) == plain) return;
-  std::vector<shared::Material> all = chosen_materials_;
-  if (all.empty()) all = resources_->scene->materials;
-  if (plain) std::ranges::transform(all, all.begin(), plain_material);
+  if (hidden_materials_.has_value() == plain) return;
+  if (!plain) {
+    replace_materials(*std::exchange(hidden_materials_, std::nullopt));
+    return;
+  }
+  const std::span<const shared::Material> shown = materials();
+  hidden_materials_.emplace(shown.begin(), shown.end());
+  std::vector<shared::Material> all(shown.size());
+  std::ranges::transform(shown, all.begin(), plain_material);
   replace_materials(all);
 }
 

@@ -121,9 +121,8 @@ class MovingScene {
   const gpu::Device& device_;
   std::shared_ptr<const SceneResources> resources_;
   std::shared_ptr<const LitEnvironment> environment_;
-  std::unique_ptr<ChangedMaterials> changed_materials_;  // null: the scene's
-  std::vector<shared::Material> chosen_materials_;  // what set_plain() hides; empty: the scene's
-  bool plain_ = false;
+  std::unique_ptr<ChangedMaterials> changed_materials_;            // null: the scene's
+  std::optional<std::vector<shared::Material>> hidden_materials_;  // by set_plain()
   EmissiveLights emissive_;
   std::vector<shared::Light> lights_at_rest_;
   std::uint32_t features_ = 0;

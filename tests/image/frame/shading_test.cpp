@@ -108,6 +108,15 @@ TEST_P(Shading, WireframeDrawsTheDiagonalOfAQuad) {
 
 INSTANTIATE_TEST_SUITE_P(Tracers, Shading, testing::Values("auto", "software"));
 
+TEST(ShadingModes, NeedNoScene) {
+  RendererRig rig = shading_rig("auto");
+  rig.renderer.set_scene(nullptr);
+  for (const ShadingMode mode : {ShadingMode::clay, ShadingMode::normals, ShadingMode::lit}) {
+    rig.apply(shading_settings(mode));
+    EXPECT_GT(rig.accumulate(1).rgba.size(), 0u) << protocol::enum_name(mode);
+  }
+}
+
 TEST(ShadingModes, LeaveLitFramesAsTheyWere) {
   RendererRig rig = shading_rig("auto");
   const auto frame = [&](ShadingMode mode) {

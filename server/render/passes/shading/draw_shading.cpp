@@ -10,22 +10,11 @@ namespace {
 
 using protocol::ShadingMode;
 
+/// shared::shading_* stand in the order of the setting's choices.
 std::uint32_t mode_of(const protocol::Settings& settings) {
-  switch (settings.view.shading) {
-    case ShadingMode::wireframe:
-      return shared::shading_wireframe;
-    case ShadingMode::clay:
-      return shared::shading_clay;
-    case ShadingMode::matcap:
-      return shared::shading_matcap;
-    case ShadingMode::uv_checker:
-      return shared::shading_uv_checker;
-    case ShadingMode::normals:
-      return shared::shading_normals;
-    case ShadingMode::lit:
-      break;
-  }
-  return 0;
+  static_assert(static_cast<std::uint32_t>(ShadingMode::wireframe) == shared::shading_wireframe);
+  static_assert(static_cast<std::uint32_t>(ShadingMode::normals) == shared::shading_normals);
+  return static_cast<std::uint32_t>(settings.view.shading);
 }
 
 }  // namespace
