@@ -59,6 +59,11 @@ inline constexpr std::size_t max_annotation_text = 2000;
 inline constexpr std::uint32_t max_idle_timeout = 31'536'000;  // seconds
 inline constexpr std::size_t max_scene_name = 512;  // paths in the catalogue; environments as well
 
+/// Keys of a camera's path, and how long it takes, seconds.
+inline constexpr std::size_t min_path_keys = 2;
+inline constexpr std::size_t max_path_keys = 200;
+inline constexpr double min_path_seconds = 0.1;
+inline constexpr double max_path_seconds = 3600.0;
 /// Frames of a clip or a turntable, and their rate in frames per second.
 inline constexpr std::uint32_t max_rendered_frames = 100000;
 inline constexpr double min_clip_rate = 0.1;

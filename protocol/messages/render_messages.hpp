@@ -1,10 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "protocol/json/enum_names.hpp"
 #include "protocol/json/fields.hpp"
 #include "protocol/json/raw_json.hpp"
 #include "protocol/limits.hpp"
@@ -45,6 +49,40 @@ struct RenderView {
   bool operator==(const RenderView&) const = default;
 };
 
+/// smooth: through all keys without a corner, slowly at both ends; linear: at one speed from key to
+/// key.
+HELIOGRAPH_ENUM(PathEasing, smooth, linear)
+
+/// A camera that moves.
+struct CameraPath {
+  static constexpr bool strict = true;
+
+  std::vector<RenderView> keys;
+  double seconds = 6.0;
+  PathEasing easing = PathEasing::smooth;
+  bool closed = false;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("keys", &CameraPath::keys,
+              "Where the camera is, at equal distances of time. Between two keys the target moves "
+              "straight or along a spline, and the camera turns about it.")
+            .length(min_path_keys, max_path_keys),
+        field("seconds", &CameraPath::seconds, "Time from the first key to the last.")
+            .range(min_path_seconds, max_path_seconds)
+            .unit("seconds")
+            .or_default(),
+        field("easing", &CameraPath::easing,
+              "smooth: through all keys without a corner, slowly at both ends; linear: at one "
+              "speed from key to key.")
+            .or_default(),
+        field("closed", &CameraPath::closed, "Whether it leads back to the first key.")
+            .or_default(),
+    };
+  }
+  bool operator==(const CameraPath&) const = default;
+};
+
 struct RenderRequest {
   static constexpr bool strict = true;
 
@@ -59,6 +97,7 @@ struct RenderRequest {
   bool fit = false;
   std::optional<double> margin;
   std::optional<std::uint32_t> turntable;
+  std::optional<CameraPath> path;
   std::string clip;
   double time = 0.0;
   double fps = 30.0;
@@ -109,6 +148,9 @@ struct RenderRequest {
         field("turntable", &RenderRequest::turntable,
               "Frames of one turn of the camera around the scene.")
             .range(1, max_rendered_frames),
+        field("path", &RenderRequest::path,
+              "Another camera, which moves; frames at the rate of fps, while the clip, if there is "
+              "one, plays."),
         field("clip", &RenderRequest::clip, "Animation clip; empty: the default pose.")
             .length(0, max_node_name)
             .or_default(),
@@ -157,5 +199,13 @@ struct RenderRequest {
   }
   bool operator==(const RenderRequest&) const = default;
 };
+
+/// Images of each camera.
+inline std::uint32_t frame_count(const RenderRequest& request) {
+  if (request.turntable) return *request.turntable;
+  if (!request.path) return request.frames.value_or(1);
+  const long frames = std::lround(request.path->seconds * request.fps);
+  return static_cast<std::uint32_t>(std::clamp(frames, 1l, long{max_rendered_frames}));
+}
 
 }  // namespace heliograph::protocol

@@ -189,6 +189,7 @@ struct CameraSet {
   std::optional<Vec3> target;
   std::optional<Vec3> up;
   std::optional<float> vertical_fov;
+  std::optional<float> focal_length;
   std::optional<std::string> name;
   std::optional<std::uint32_t> seq;
 
@@ -205,6 +206,11 @@ struct CameraSet {
         field("vertical_fov", &CameraSet::vertical_fov, "Vertical field of view.")
             .range(min_field_of_view, max_field_of_view)
             .unit("degrees"),
+        field("focal_length", &CameraSet::focal_length,
+              "Gives the field of view of a lens of this focal length before a sensor of the "
+              "setting lens.sensor_height; instead of vertical_fov.")
+            .range(0.01, 1e5)
+            .unit("mm"),
         field("name", &CameraSet::name,
               "A scene camera to start from, by its name or its number from 1 on; the other "
               "members are applied on top.")

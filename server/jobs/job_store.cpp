@@ -46,7 +46,7 @@ StoredFile read_file(const Statement& row) {
 std::int64_t known_images(const std::vector<protocol::RenderRequest>& entries) {
   std::int64_t images = 0;
   for (const protocol::RenderRequest& entry : entries) {
-    images += std::int64_t{entry.turntable.value_or(entry.frames.value_or(1))};
+    images += std::int64_t{protocol::frame_count(entry)};
   }
   return images;
 }

@@ -31,6 +31,18 @@ void Bounds::include(const Bounds& other) {
   maximum = glm::max(maximum, other.maximum);
 }
 
+Bounds world_bounds(const Bounds& mesh, const glm::mat4& world) {
+  Bounds bounds;
+  if (mesh.empty()) return bounds;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::vec3 point(corner & 1 ? mesh.maximum.x : mesh.minimum.x,
+                          corner & 2 ? mesh.maximum.y : mesh.minimum.y,
+                          corner & 4 ? mesh.maximum.z : mesh.minimum.z);
+    bounds.include(glm::vec3(world * glm::vec4(point, 1.0f)));
+  }
+  return bounds;
+}
+
 glm::mat4 Transform::matrix() const {
   glm::mat4 matrix = glm::mat4_cast(rotation);
   for (int axis = 0; axis < 3; ++axis) matrix[axis] *= scale[axis];

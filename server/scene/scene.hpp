@@ -23,6 +23,9 @@ struct Bounds {
   void include(const Bounds& other);
 };
 
+/// A box around a box of a mesh's space, in the world; empty for an empty one.
+Bounds world_bounds(const Bounds& mesh, const glm::mat4& world);
+
 /// RGBA8 pixels, top row first; mip levels in order, the last is 1x1. `srgb`: color channels are
 /// sRGB encoded; mips were filtered in linear space. `pixels` may be released after upload;
 /// ImagePixels decodes them again.

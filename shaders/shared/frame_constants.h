@@ -56,6 +56,11 @@ struct FrameConstants {
   vec3 sun_irradiance;         // on a surface facing it
   float background_intensity;  // factor on the map of what is seen behind the scene
 
+  float lens_radius;     // of the aperture, metres; 0: everything is sharp
+  float focus_distance;  // along the view, metres
+  float padding0;
+  float padding1;
+
   vec4 ground;  // middle of the plane that catches shadows, metres; half its side, 0: there is none
 };
 

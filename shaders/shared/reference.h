@@ -6,6 +6,9 @@ SHARED_BEGIN
 
 SHARED_CONSTANT uint path_specular = 1u;  // the ray left by the specular lobe, not the diffuse one
 
+// Of the random numbers that place a camera ray on the aperture; below those of the path's rounds.
+SHARED_CONSTANT uint lens_dimension = 252u;
+
 struct ReferencePath {
   vec3 throughput;
   uint bounces;       // scattering events so far

@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "render/frame/engine_parts.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "scene/animation/deform.hpp"
 #include "scene/animation/pose.hpp"
 #include "scene/gltf/materials/layer_table.hpp"

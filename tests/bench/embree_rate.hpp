@@ -38,6 +38,10 @@ class RecordingTracer : public tracing::RayTracer {
   protocol::TracerKind kind() const override { return tracer_->kind(); }
   std::shared_ptr<const tracing::AccelerationStructure> build(
       const scene::Scene& scene, const tracing::SceneBuffers& buffers) const override;
+  std::shared_ptr<const tracing::AccelerationStructure> build_apart(
+      const scene::Scene& scene, const tracing::SceneBuffers& buffers) const override {
+    return tracer_->build_apart(scene, buffers);
+  }
   std::shared_ptr<const tracing::AccelerationStructure> build_without(
       const std::vector<bool>& hidden, std::shared_ptr<const tracing::AccelerationStructure> rest,
       const scene::Scene& scene, const tracing::SceneBuffers& buffers) const override {

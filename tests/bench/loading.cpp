@@ -20,7 +20,7 @@
 
 #include "render/api/kept_textures.hpp"
 #include "render/api/renderer.hpp"
-#include "scene/camera.hpp"
+#include "scene/camera/camera.hpp"
 #include "scene/gltf/geometry/tangents.hpp"
 #include "scene/import.hpp"
 

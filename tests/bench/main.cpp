@@ -15,7 +15,7 @@
 #include "protocol/settings/settings_json.hpp"
 #include "render/api/renderer.hpp"
 #include "render/frame/engine_parts.hpp"
-#include "scene/camera.hpp"
+#include "scene/camera/camera.hpp"
 #include "scene/import.hpp"
 #include "tests/bench/atrous_rate.hpp"
 #include "tests/bench/embree_rate.hpp"

@@ -3,8 +3,8 @@
 #include "render/api/frame_values.hpp"
 #include "render/frame/frame.hpp"
 #include "render/frame/frame_constants.hpp"
-#include "render/resources/moving_scene.hpp"
-#include "render/resources/scene_motion.hpp"
+#include "render/resources/moving/moving_scene.hpp"
+#include "render/resources/moving/scene_motion.hpp"
 #include "tests/support/engine.hpp"
 #include "tests/support/scene_builder.hpp"
 

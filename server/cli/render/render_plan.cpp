@@ -12,7 +12,8 @@
 #include "protocol/json/suggestions.hpp"
 #include "protocol/limits.hpp"
 #include "scene/animation/pose.hpp"
-#include "scene/camera_choice.hpp"
+#include "scene/camera/camera_choice.hpp"
+#include "scene/camera/camera_path.hpp"
 
 namespace heliograph::cli {
 namespace {
@@ -61,7 +62,7 @@ scene::Camera camera_of(const protocol::RenderView& view) {
 
 /// A camera in each frame's direction of a turn that begins at `back`, which see the whole scene:
 /// the first of them.
-scene::Camera fitted(const scene::Scene& scene, const protocol::RenderRequest& request,
+scene::Camera fitted(const scene::Bounds& shown, const protocol::RenderRequest& request,
                      const glm::vec3& back, const scene::Camera& lens) {
   const FrameSize size = frame_size(request);
   const std::uint32_t frames = request.turntable.value_or(1);
@@ -71,7 +72,7 @@ scene::Camera fitted(const scene::Scene& scene, const protocol::RenderRequest& r
   }
   scene::Camera camera =
       scene::fit_cameras(
-          scene.bounds, directions,
+          shown, directions,
           {.vertical_fov = lens.vertical_fov,
            .aspect = static_cast<float>(size.width) / static_cast<float>(size.height),
            .margin = static_cast<float>(request.margin.value_or(scene::default_margin))})
@@ -82,6 +83,7 @@ scene::Camera fitted(const scene::Scene& scene, const protocol::RenderRequest& r
 
 std::vector<scene::Camera> named_cameras(const scene::Scene& scene,
                                          const protocol::RenderRequest& request) {
+  if (request.path) return {camera_of(request.path->keys.front())};
   if (request.view) return {camera_of(*request.view)};
   if (request.camera == all_cameras && !scene.cameras.empty()) return scene.cameras;
   if (!request.camera.empty() && request.camera != all_cameras) {
@@ -95,25 +97,25 @@ std::vector<scene::Camera> named_cameras(const scene::Scene& scene,
   return {};
 }
 
-std::vector<scene::Camera> choose_cameras(const scene::Scene& scene,
+std::vector<scene::Camera> choose_cameras(const scene::Scene& scene, const scene::Bounds& shown,
                                           const protocol::RenderRequest& request) {
   scene::Camera lens;
   if (request.orbit) {
     const auto [azimuth, elevation] = *request.orbit;
     lens.name = "orbit";
-    return {fitted(scene, request, scene::orbit_direction(azimuth, elevation), lens)};
+    return {fitted(shown, request, scene::orbit_direction(azimuth, elevation), lens)};
   }
   std::vector<scene::Camera> cameras = named_cameras(scene, request);
   if (cameras.empty()) {
     lens.name = "fit";
-    return {fitted(scene, request, scene::default_direction(), lens)};
+    return {fitted(shown, request, scene::default_direction(), lens)};
   }
   if (!request.fit) {
     if (!request.margin) return cameras;
     throw std::runtime_error("--margin: needs --fit or --orbit, as the scene has cameras");
   }
   for (scene::Camera& camera : cameras) {
-    camera = fitted(scene, request, glm::normalize(camera.eye - camera.target), camera);
+    camera = fitted(shown, request, glm::normalize(camera.eye - camera.target), camera);
   }
   return cameras;
 }
@@ -150,11 +152,18 @@ scene::Camera turned(const scene::Scene& scene, scene::Camera camera, double tur
   return camera;
 }
 
-}  // namespace
-
-std::uint32_t frame_count(const protocol::RenderRequest& request) {
-  return request.turntable ? *request.turntable : request.frames.value_or(1);
+/// In a frame of so many: the first is at the first key, and one of an open path at the last.
+scene::Camera along_path(const protocol::CameraPath& path, std::uint32_t frame,
+                         std::uint32_t frames) {
+  std::vector<scene::Camera> keys;
+  for (const protocol::RenderView& key : path.keys) keys.push_back(camera_of(key));
+  const std::uint32_t steps = path.closed ? frames : std::max(frames, 2u) - 1;
+  return scene::camera_on_path(
+      keys, {.smooth = path.easing == protocol::PathEasing::smooth, .closed = path.closed},
+      static_cast<float>(frame) / static_cast<float>(steps));
 }
+
+}  // namespace
 
 FrameSize frame_size(const protocol::RenderRequest& request) {
   const FrameSize usual;
@@ -165,19 +174,21 @@ FrameSize frame_size(const protocol::RenderRequest& request) {
   return usual;
 }
 
-std::vector<Shot> plan_shots(const scene::Scene& scene, const protocol::RenderRequest& request) {
+std::vector<Shot> plan_shots(const scene::Scene& scene, const scene::Bounds& shown,
+                             const protocol::RenderRequest& request) {
   const scene::Clip* const clip = choose_clip(scene, request);
   if (clip && request.time > static_cast<double>(clip->duration)) {
     throw std::runtime_error("--time: " + length_of(*clip));
   }
   std::vector<Shot> shots;
-  const std::uint32_t frames = frame_count(request);
+  const std::uint32_t frames = protocol::frame_count(request);
   std::size_t camera_number = 0;
-  for (const scene::Camera& camera : choose_cameras(scene, request)) {
+  for (const scene::Camera& camera : choose_cameras(scene, shown, request)) {
     for (std::uint32_t i = 0; i < frames; ++i) {
       const double seconds = request.time + (request.turntable ? 0.0 : i / request.fps);
       scene::Camera at_time = posed(scene, camera, clip, seconds);
       if (request.turntable) at_time = turned(scene, at_time, static_cast<double>(i) / frames);
+      if (request.path) at_time = along_path(*request.path, i, frames);
       at_time.name = camera.name;
       const bool cut = i == 0 || request.turntable.has_value();
       shots.push_back({.camera = at_time,
@@ -196,7 +207,7 @@ std::string note_on_clip(const scene::Scene& scene, const protocol::RenderReques
   if (!clip || request.turntable) return {};
   const double left = static_cast<double>(clip->duration) - request.time;
   const auto within = static_cast<std::uint32_t>(std::floor(left * request.fps + 1e-6)) + 1;
-  if (frame_count(request) <= within) return {};
+  if (protocol::frame_count(request) <= within) return {};
   return length_of(*clip) + ": frames from " + std::to_string(within) + " on repeat it";
 }
 

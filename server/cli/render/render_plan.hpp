@@ -27,12 +27,11 @@ struct Shot {
   bool cut = false;  // another view than that of the shot before: no history applies
 };
 
-/// Frames of each camera.
-std::uint32_t frame_count(const protocol::RenderRequest& request);
-
-/// The images of a scene, in the order in which they are rendered.
+/// The images of a scene, in the order in which they are rendered. `shown`: bounds of the scene as
+/// it is shown, into which cameras are fitted.
 /// @throws std::runtime_error where the scene lacks what the request names
-std::vector<Shot> plan_shots(const scene::Scene& scene, const protocol::RenderRequest& request);
+std::vector<Shot> plan_shots(const scene::Scene& scene, const scene::Bounds& shown,
+                             const protocol::RenderRequest& request);
 
 /// One sentence for the user on frames that lie beyond the end of the clip; empty: there are none.
 std::string note_on_clip(const scene::Scene& scene, const protocol::RenderRequest& request);

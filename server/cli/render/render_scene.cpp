@@ -21,6 +21,7 @@
 #include "cli/render/stopped_time.hpp"
 #include "protocol/limits.hpp"
 #include "render/api/renderer.hpp"
+#include "scene/animation/explosion.hpp"
 #include "scene/import.hpp"
 #include "scene/studio.hpp"
 #include "session/library/environment_source.hpp"
@@ -317,6 +318,7 @@ protocol::RenderRequest without_views(protocol::RenderRequest request) {
   request.fit = false;
   request.margin.reset();
   request.turntable.reset();
+  request.path.reset();
   return request;
 }
 
@@ -340,10 +342,17 @@ std::shared_ptr<Renderers> take_renderers(RenderContext& context, const RenderTa
   return renderers;
 }
 
+/// Of what the task shows, with its parts as far apart as it says.
+scene::Bounds shown_bounds(const scene::Scene& scene, const RenderTask& task) {
+  const float explode = task.settings.view.explode;
+  if (explode == 0.0f) return scene.bounds;
+  return scene::posed_bounds(scene, scene::shown_pose(scene, nullptr, 0.0, explode));
+}
+
 }  // namespace
 
 std::size_t expected_images(const RenderTask& task) {
-  return frame_count(task.request);
+  return protocol::frame_count(task.request);
 }
 
 void render_task(RenderContext& context, const RenderTask& task) {
@@ -354,7 +363,7 @@ void render_task(RenderContext& context, const RenderTask& task) {
     read = read_scene(context, task);
   }
   const scene::Scene& scene = read ? *read : *render::scene_of(*context.scene.resources);
-  const std::vector<Shot> shots = plan_shots(scene, request);
+  const std::vector<Shot> shots = plan_shots(scene, shown_bounds(scene, task), request);
   const std::vector<PlannedFile> files = plan_files(context, task, shots);
   if (const std::string note = note_on_clip(scene, request); !note.empty()) {
     std::fprintf(stderr, "heliograph: %s: %s\n", request.scene.c_str(), note.c_str());

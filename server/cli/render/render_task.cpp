@@ -82,7 +82,8 @@ protocol::Settings settings_of(const protocol::RenderRequest& request,
 }
 
 bool has_many_frames(const protocol::RenderRequest& request) {
-  return request.turntable || (!request.clip.empty() && request.frames.value_or(1) > 1);
+  return request.turntable || request.path ||
+         (!request.clip.empty() && request.frames.value_or(1) > 1);
 }
 
 /// The name of an entry's files, which tells its images apart.
@@ -132,13 +133,29 @@ std::array<float, 2> parse_orbit(const std::string& text) {
   return angles;
 }
 
+void check_path(const protocol::RenderRequest& request) {
+  if (request.frames || request.turntable) {
+    throw std::invalid_argument(std::string(request.frames ? "--frames" : "--turntable") +
+                                ": --path has a number of frames of its own");
+  }
+  if (request.view || request.orbit || request.fit || !request.camera.empty()) {
+    throw std::invalid_argument(
+        "--path: is a camera of its own; --camera, --orbit, --fit and "
+        "view are others");
+  }
+  for (const protocol::RenderView& key : request.path->keys) {
+    if (key.eye == key.target) throw std::invalid_argument("--path: eye and target coincide");
+  }
+}
+
 void check_combination(const protocol::RenderRequest& request, bool timings) {
-  if (request.frames && request.clip.empty() && !timings) {
+  if (request.frames && request.clip.empty() && !request.path && !timings) {
     throw std::invalid_argument("--frames: needs --clip, or --timings; --turntable has its own");
   }
   if (request.frames && request.turntable) {
     throw std::invalid_argument("--frames: --turntable has a number of frames of its own");
   }
+  if (request.path) check_path(request);
   if (request.view && !request.camera.empty()) {
     throw std::invalid_argument("view: camera names another one");
   }
@@ -197,6 +214,7 @@ protocol::RenderRequest common_request(const RenderOptions& options) {
     request.reference = protocol::enum_value<protocol::ReferenceScope>(options.reference);
   }
   if (!options.edits.empty()) request.edits = read_edits(options.edits);
+  if (!options.path.empty()) request.path = read_path(options.path);
   if (!options.orbit.empty()) request.orbit = parse_orbit(options.orbit);
   // With --timings these are the frames to measure.
   if (options.timings) request.frames.reset();

@@ -18,6 +18,7 @@
 #include "render/passes/gbuffer/gbuffer.hpp"
 #include "render/passes/indirect/trace_indirect.hpp"
 #include "render/passes/post/accumulate.hpp"
+#include "render/passes/post/defocus.hpp"
 #include "render/passes/post/filter_mean.hpp"
 #include "render/passes/post/mean_weight.hpp"
 #include "render/passes/post/present.hpp"
@@ -54,8 +55,8 @@ const std::vector<BufferDescription>& all_buffers() {
       denoise_specular_buffers, specular_temporal_buffers, specular_atrous_buffers,
       indirect_buffers, indirect_half_buffers, indirect_reproject_buffers,
       indirect_temporal_buffers, indirect_atrous_buffers, skybox_buffers, compose_buffers,
-      blended_buffers, reference_buffers, accumulate_buffers, temporal_antialias_buffers,
-      filter_mean_buffers, mean_weight_buffers);
+      blended_buffers, defocus_buffers, reference_buffers, accumulate_buffers,
+      temporal_antialias_buffers, filter_mean_buffers, mean_weight_buffers);
   return buffers;
 }
 

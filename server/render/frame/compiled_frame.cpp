@@ -5,7 +5,7 @@
 #include "render/frame/buffer_list.hpp"
 #include "render/frame/frame_set.hpp"
 #include "render/passes/post/present.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "render/resources/scene_set.hpp"
 #include "render/views/view_colors.hpp"
 

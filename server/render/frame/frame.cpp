@@ -11,6 +11,7 @@
 #include "render/passes/ground/ground.hpp"
 #include "render/passes/indirect/trace_indirect.hpp"
 #include "render/passes/post/accumulate.hpp"
+#include "render/passes/post/defocus.hpp"
 #include "render/passes/post/filter_mean.hpp"
 #include "render/passes/post/hold_mean.hpp"
 #include "render/passes/post/mean_weight.hpp"
@@ -153,9 +154,10 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
     plan.finish_frames_from_here();
   const gpu::ImageRef background = draw_skybox(plan, in, gbuffer);
   shade_ground(plan, in, gbuffer, ground, background);
-  const Composed composed = compose(plan, in, gbuffer, noisy, denoised, background);
+  const Composed sharp = compose(plan, in, gbuffer, noisy, denoised, background);
   GBuffer visible = gbuffer;
-  visible.motion = blend_surfaces(plan, in, gbuffer, composed, cache, blended);
+  visible.motion = blend_surfaces(plan, in, gbuffer, sharp, cache, blended);
+  const Composed composed = defocus(plan, in, gbuffer, sharp);
 
   const gpu::History accumulated = accumulate(plan, in, composed.noisy, traced);
   const Exposure exposure = expose(plan, in, composed.hdr, accumulated.current);

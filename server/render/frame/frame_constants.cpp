@@ -1,12 +1,13 @@
 #include "render/frame/frame_constants.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/constants.hpp>
 
 #include "render/resources/environment/background.hpp"
 #include "render/resources/ground_plane.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "render/resources/r2_sequence.hpp"
 
 namespace heliograph::render {
@@ -48,6 +49,18 @@ void add_environment(shared::FrameConstants& constants, const EnvironmentView& e
   constants.sun_radius = std::tan(glm::radians(0.5f * sun.angular_diameter));
   constants.sun_irradiance = sun.irradiance * constants.environment_intensity;
   ++constants.light_count;
+}
+
+/// A thin lens: its aperture and what it focuses on (Potmesil and Chakravarty 1981).
+void add_lens(shared::FrameConstants& constants, const scene::Camera& camera,
+              const protocol::Settings::Lens& lens) {
+  if (!lens.depth_of_field || camera.orthographic_height > 0.0f) return;
+  const float half_height = 0.5e-3f * lens.sensor_height;  // metres
+  const float focal_length = half_height / std::tan(glm::radians(0.5f * camera.vertical_fov));
+  const float chosen =
+      lens.focus_distance > 0.0f ? lens.focus_distance : glm::distance(camera.eye, camera.target);
+  constants.lens_radius = 0.5f * focal_length / lens.f_number;
+  constants.focus_distance = std::max(chosen, camera.near_plane);
 }
 
 }  // namespace
@@ -100,6 +113,7 @@ shared::FrameConstants make_frame_constants(const scene::Camera& camera,
   constants.tone_map_curve = static_cast<std::uint32_t>(settings.tone_map.curve);
   constants.directional_light_radius =
       diameter < 0.0f ? -1.0f : std::tan(glm::radians(0.5f * diameter));
+  add_lens(constants, camera, settings.lens);
   constants.ground = ground_plane(settings, scene);
   add_environment(constants, scene.environment().view(settings.environment.separate_sun));
   return constants;

@@ -3,7 +3,7 @@
 #include "gpu/memory/buffer.hpp"
 #include "gpu/memory/image.hpp"
 #include "protocol/settings/settings.hpp"
-#include "scene/camera.hpp"
+#include "scene/camera/camera.hpp"
 #include "shaders/shared/frame_constants.h"
 
 namespace heliograph::render {

@@ -44,6 +44,7 @@ void Renderer::set_scene(std::shared_ptr<const SceneResources> scene) {
   state_->scene = scene ? std::move(scene) : state_->nothing;
   state_->moving.emplace(state_->parts.device, *state_->parts.tracer, state_->scene);
   state_->moving->set_plain(is_plain(state_->settings));
+  state_->moving->set_explosion(state_->settings.view.explode);
   state_->discard_frame_plan();
 }
 

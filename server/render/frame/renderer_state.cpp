@@ -84,6 +84,7 @@ void Renderer::State::set_drawn() {
 
 void Renderer::State::change_settings(const protocol::Settings& changed) {
   const auto scope = protocol::changed_scope(settings, changed);
+  explode(changed.view.explode);
   settings = changed;
   if (includes(scope, protocol::ResetScope::structure)) {
     discard_frame_plan();
@@ -92,6 +93,12 @@ void Renderer::State::change_settings(const protocol::Settings& changed) {
   stale = true;
   if (includes(scope, protocol::ResetScope::history)) has_previous = false;
   if (includes(scope, protocol::ResetScope::accumulation)) restart_accumulation();
+}
+
+void Renderer::State::explode(float amount) {
+  // The plan refers to the structure of a scene that comes apart, or together.
+  if ((amount > 0.0f) != (settings.view.explode > 0.0f)) compiled.reset();
+  if (moving->set_explosion(amount)) discard_frame_plan();
 }
 
 /// Other programs make other frames: histories of the old ones are invalid.

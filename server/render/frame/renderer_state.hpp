@@ -13,8 +13,8 @@
 #include "render/frame/frame_constants.hpp"
 #include "render/passes/post/present.hpp"
 #include "render/passes/section/section_tracer.hpp"
-#include "render/resources/moving_scene.hpp"
-#include "render/resources/scene_motion.hpp"
+#include "render/resources/moving/moving_scene.hpp"
+#include "render/resources/moving/scene_motion.hpp"
 
 namespace heliograph::render {
 
@@ -32,6 +32,7 @@ struct Renderer::State {
   VkExtent2D drawn() const;
   void set_drawn();
   void change_settings(const protocol::Settings& changed);
+  void explode(float amount);
   void use_newest_shaders();
   Frame output();
   int next_jpeg_quality() const;

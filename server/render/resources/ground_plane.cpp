@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "render/resources/environment/upper_light.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "render/resources/r2_sequence.hpp"
 
 namespace heliograph::render {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "render/resources/scene_resources.hpp"
 
 namespace heliograph::render::kernels {

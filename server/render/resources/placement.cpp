@@ -34,15 +34,4 @@ shared::DrawConstants draw_constants(const shared::Instance& instance, std::uint
   return constants;
 }
 
-scene::Bounds world_bounds(const scene::Bounds& mesh, const glm::mat4& world) {
-  scene::Bounds bounds;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 point{corner & 1 ? mesh.maximum.x : mesh.minimum.x,
-                          corner & 2 ? mesh.maximum.y : mesh.minimum.y,
-                          corner & 4 ? mesh.maximum.z : mesh.minimum.z};
-    bounds.include(glm::vec3(world * glm::vec4(point, 1.0f)));
-  }
-  return bounds;
-}
-
 }  // namespace heliograph::render

@@ -14,7 +14,4 @@ void move_instance(shared::Instance& instance, const glm::mat4& world);
 /// What the rasteriser pushes for an instance.
 shared::DrawConstants draw_constants(const shared::Instance& instance, std::uint32_t index);
 
-/// A box around a box of the mesh's space, in the world.
-scene::Bounds world_bounds(const scene::Bounds& mesh, const glm::mat4& world);
-
 }  // namespace heliograph::render

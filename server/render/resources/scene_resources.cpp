@@ -413,7 +413,7 @@ void SceneResources::list_draws() {
     draw.double_sided = flags & shared::material_double_sided;
     draw.flipped = instances_[i].flags & shared::instance_flipped;
     draw.bounds =
-        world_bounds(scene->meshes[instance.mesh].bounds, scene->nodes[instance.node].world);
+        scene::world_bounds(scene->meshes[instance.mesh].bounds, scene->nodes[instance.node].world);
     draws.push_back(draw);
   }
   std::sort(draws.begin(), draws.end(), [](const Draw& a, const Draw& b) {

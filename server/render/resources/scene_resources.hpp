@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/api/engine.hpp"
+#include "render/resources/draw.hpp"
 #include "render/resources/emissive/emissive_lights.hpp"
 #include "render/resources/environment/lit_environment.hpp"
 #include "render/resources/host_tables.hpp"
@@ -15,21 +16,6 @@
 #include "tracing/ray_tracer.hpp"
 
 namespace heliograph::render {
-
-/// One instance as the rasteriser draws it.
-struct Draw {
-  shared::DrawConstants constants;
-  std::uint32_t material;
-  std::uint32_t first_index;
-  std::uint32_t index_count;
-  std::uint32_t first_vertex;
-  // Where its vertices of the frame before start among those of all meshes that deform.
-  std::optional<std::uint32_t> previous_vertex;
-  bool masked;  // alpha mask or blend: the program that discards
-  bool double_sided;
-  bool flipped;
-  scene::Bounds bounds;  // world
-};
 
 /// Materials as the rasteriser reads them: a uniform block and a descriptor set each.
 struct MaterialSets {

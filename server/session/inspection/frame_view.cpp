@@ -2,15 +2,29 @@
 
 #include <cmath>
 
-#include "scene/camera.hpp"
+#include "scene/animation/explosion.hpp"
+#include "scene/camera/camera.hpp"
 
 namespace heliograph::session {
+namespace {
+
+const scene::Clip* clip_of(const RenderState& state) {
+  return scene::find_clip(*state.scene, state.animation.clip);
+}
+
+scene::Camera camera_of(const RenderState& state) {
+  if (!state.camera_follows) return state.camera;
+  const double seconds = state.animation.at(state.now());
+  return scene::camera_at(*state.scene, state.camera,
+                          scene::pose_at(*state.scene, clip_of(state), seconds));
+}
+
+}  // namespace
 
 FrameView::FrameView(const RenderState& state)
-    : pose_(scene::pose_at(*state.scene, scene::find_clip(*state.scene, state.animation.clip),
-                           state.animation.at(state.now()))),
-      camera_(state.camera_follows ? scene::camera_at(*state.scene, state.camera, pose_)
-                                   : state.camera),
+    : pose_(scene::shown_pose(*state.scene, clip_of(state), state.animation.at(state.now()),
+                              state.settings.view.explode)),
+      camera_(camera_of(state)),
       forward_(glm::normalize(camera_.target - camera_.eye)),
       aspect_(static_cast<float>(state.width) / static_cast<float>(state.height)) {}
 

@@ -4,7 +4,7 @@
 #include <mutex>
 #include <string>
 
-#include "scene/animation/pose.hpp"
+#include "scene/animation/explosion.hpp"
 #include "session/state/session_core.hpp"
 
 // What commands on marks of any kind have in common: `marks` is a member of SessionCore.
@@ -22,8 +22,10 @@ auto list_marks(const SessionCore& core, Set SessionCore::*marks) {
   const ScenePart part = core.part();
   const std::string clip = core.timeline.clock().clip;
   const double seconds = core.clip_seconds();
+  const float explode = core.settings.view.explode;
   lock.unlock();  // a pose of many nodes takes milliseconds
-  return copy.list(part, *scene, scene::pose_at(*scene, scene::find_clip(*scene, clip), seconds));
+  return copy.list(part, *scene,
+                   scene::shown_pose(*scene, scene::find_clip(*scene, clip), seconds, explode));
 }
 
 /// Changes them by `change(marks, part)`, under the lock, and tells viewers but `by`.
@@ -37,7 +39,8 @@ auto change_marks(SessionCore& core, Set SessionCore::*marks, const std::string&
   if (const protocol::Result<void> done = change(core.*marks, part); !done) return done.error();
   core.lead();
   const scene::Clip* const clip = scene::find_clip(*core.scene, core.timeline.clock().clip);
-  const scene::Pose pose = scene::pose_at(*core.scene, clip, core.clip_seconds());
+  const scene::Pose pose =
+      scene::shown_pose(*core.scene, clip, core.clip_seconds(), core.settings.view.explode);
   const typename Notification::Params message{.list = (core.*marks).list(part, *core.scene, pose),
                                               .by = by};
   core.notify_others_latest<Notification>(by, message);

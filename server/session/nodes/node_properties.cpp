@@ -30,20 +30,6 @@ void for_each_instance(const scene::Scene& scene, const NodeState& state,
   }
 }
 
-scene::Bounds world_bounds(const scene::Scene& scene, const scene::Instance& instance) {
-  const scene::Bounds& mesh = scene.meshes[instance.mesh].bounds;
-  scene::Bounds bounds;
-  if (mesh.empty()) return bounds;
-  const glm::mat4& world = scene.nodes[instance.node].world;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::vec3 point(corner & 1 ? mesh.maximum.x : mesh.minimum.x,
-                          corner & 2 ? mesh.maximum.y : mesh.minimum.y,
-                          corner & 4 ? mesh.maximum.z : mesh.minimum.z);
-    bounds.include(glm::vec3(world * glm::vec4(point, 1.0f)));
-  }
-  return bounds;
-}
-
 }  // namespace
 
 protocol::NodeList list_nodes(const scene::Scene& scene, const NodeState& state,
@@ -84,18 +70,19 @@ protocol::NodeProperties node_properties(const scene::Scene& scene, const NodeSt
   for (const std::uint32_t material : materials) {
     properties.materials.push_back(all[material].name);
   }
-  const scene::Bounds bounds = node_bounds(scene, state, nodes);
+  const scene::Bounds bounds = node_bounds(scene, scene::rest_pose(scene), state, nodes);
   if (!bounds.empty()) {
     properties.bounds = {.min = to_protocol(bounds.minimum), .max = to_protocol(bounds.maximum)};
   }
   return properties;
 }
 
-scene::Bounds node_bounds(const scene::Scene& scene, const NodeState& state,
-                          std::span<const std::uint32_t> nodes) {
+scene::Bounds node_bounds(const scene::Scene& scene, const scene::Pose& pose,
+                          const NodeState& state, std::span<const std::uint32_t> nodes) {
   scene::Bounds bounds;
   for_each_instance(scene, state, nodes, [&](std::size_t, const scene::Instance& instance) {
-    bounds.include(world_bounds(scene, instance));
+    bounds.include(
+        scene::world_bounds(scene.meshes[instance.mesh].bounds, pose.worlds[instance.node]));
   });
   return bounds;
 }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <span>
 
+#include "scene/animation/pose.hpp"
 #include "session/nodes/node_state.hpp"
 
 namespace heliograph::session {
@@ -13,8 +14,8 @@ protocol::NodeList list_nodes(const scene::Scene& scene, const NodeState& state,
 /// Of checked ids.
 protocol::NodeProperties node_properties(const scene::Scene& scene, const NodeState& state,
                                          std::span<const std::uint32_t> nodes);
-/// Around the meshes of these nodes and of all below them, world space, before any animation.
-scene::Bounds node_bounds(const scene::Scene& scene, const NodeState& state,
-                          std::span<const std::uint32_t> nodes);
+/// Around the meshes of these nodes and of all below them in a pose of the scene, world space.
+scene::Bounds node_bounds(const scene::Scene& scene, const scene::Pose& pose,
+                          const NodeState& state, std::span<const std::uint32_t> nodes);
 
 }  // namespace heliograph::session

@@ -296,6 +296,7 @@ BvhTopLevel build_top_level(RTCDevice device, const Bvh& bvh,
 Bvh build_bvh(RTCDevice device, const scene::Scene& scene, const BvhLayout& layout,
               const std::stop_token& stop) {
   Bvh bvh;
+  bvh.is_flat = layout.flat;
   bvh.flat = layout.flat ? flat_instances(scene, layout.most_bytes)
                          : std::vector<bool>(scene.instances.size());
   bvh.hidden = layout.hidden;

@@ -42,6 +42,7 @@ struct Bvh {
   std::vector<BvhMesh> meshes;
   BvhMesh flat_tree;
   scene::Bounds flat_bounds;     // world
+  bool is_flat = true;           // BvhLayout::flat
   std::vector<bool> flat;        // by instance: whether it is in that tree, unless it is hidden
   std::vector<bool> hidden;      // by instance
   std::size_t first_placed = 0;  // index of the first instance record; the rest is the upper level

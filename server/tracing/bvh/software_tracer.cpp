@@ -53,7 +53,8 @@ class StaticSoftwareStructure : public SoftwareStructure {
       : records_(upload_texels(device, "bvh.records", bvh.records)),
         triangles_(upload_texels(device, "bvh.triangles", bvh.triangles)),
         alpha_heap_(masks),
-        root_(bvh.root) {
+        root_(bvh.root),
+        flat_(bvh.is_flat) {
     check_texels(device, masks.name(), masks.size() / sizeof(std::uint32_t));
     masks.texel_view(VK_FORMAT_R32_UINT);
     if (moves) bvh_ = std::make_shared<const Bvh>(std::move(bvh));
@@ -62,7 +63,9 @@ class StaticSoftwareStructure : public SoftwareStructure {
   SoftwareTables tables() const override { return {records_, triangles_, alpha_heap_}; }
   std::uint32_t root() const override { return root_; }
   std::uint64_t bytes() const override { return records_.size() + triangles_.size(); }
-  /// Source of the copies for animated scenes; null for scenes without clips.
+  /// Whether what no clip moves is one tree.
+  bool flat() const { return flat_; }
+  /// Source of the copies for scenes that move; null for others.
   const std::shared_ptr<const Bvh>& bvh() const { return bvh_; }
 
  private:
@@ -70,6 +73,7 @@ class StaticSoftwareStructure : public SoftwareStructure {
   gpu::Buffer triangles_;
   const gpu::Buffer& alpha_heap_;
   std::uint32_t root_;
+  bool flat_;
   std::shared_ptr<const Bvh> bvh_;
 };
 
@@ -137,12 +141,19 @@ class SoftwareTracer : public StoppableTracer {
                                                      !scene.clips.empty(), buffers.alpha_heap);
   }
 
-  std::shared_ptr<const AccelerationStructure> build_without(
-      const std::vector<bool>& hidden, std::shared_ptr<const AccelerationStructure>,
+  std::shared_ptr<const AccelerationStructure> build_apart(
       const scene::Scene& scene, const SceneBuffers& buffers) const override {
     return std::make_shared<StaticSoftwareStructure>(
-        device_, build_bvh(embree_.get(), scene, {.hidden = hidden}), !scene.clips.empty(),
-        buffers.alpha_heap);
+        device_, build_bvh(embree_.get(), scene, {.flat = false}), true, buffers.alpha_heap);
+  }
+
+  std::shared_ptr<const AccelerationStructure> build_without(
+      const std::vector<bool>& hidden, std::shared_ptr<const AccelerationStructure> rest,
+      const scene::Scene& scene, const SceneBuffers& buffers) const override {
+    const bool flat = dynamic_cast<const StaticSoftwareStructure&>(*rest).flat();
+    return std::make_shared<StaticSoftwareStructure>(
+        device_, build_bvh(embree_.get(), scene, {.flat = flat, .hidden = hidden}),
+        !flat || !scene.clips.empty(), buffers.alpha_heap);
   }
 
   std::unique_ptr<MovingStructure> build_moving(std::shared_ptr<const AccelerationStructure> rest,

@@ -19,6 +19,11 @@ class DriverTracer : public RayTracer {
     return std::make_shared<StaticDeviceScene>(device_, scene, buffers.alpha_heap);
   }
 
+  std::shared_ptr<const AccelerationStructure> build_apart(
+      const scene::Scene& scene, const SceneBuffers& buffers) const override {
+    return build(scene, buffers);  // keeps every instance on its own
+  }
+
   std::shared_ptr<const AccelerationStructure> build_without(
       const std::vector<bool>& hidden, std::shared_ptr<const AccelerationStructure> rest,
       const scene::Scene& scene, const SceneBuffers& buffers) const override {

@@ -104,6 +104,12 @@ class EmbreeTracer : public StoppableTracer {
     return structure;
   }
 
+  std::shared_ptr<const AccelerationStructure> build_apart(
+      const scene::Scene& scene, const SceneBuffers& buffers) const override {
+    return std::make_shared<EmbreeStructure>(
+        EmbreeScene(embree_.get(), scene, mapped_bytes(buffers.alpha_heap), {.flat = false}));
+  }
+
   std::shared_ptr<const AccelerationStructure> build_without(
       const std::vector<bool>& hidden, std::shared_ptr<const AccelerationStructure> rest,
       const scene::Scene& scene, const SceneBuffers&) const override {

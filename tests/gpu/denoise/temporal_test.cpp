@@ -7,7 +7,7 @@
 #include <limits>
 #include <optional>
 
-#include "render/resources/scene_motion.hpp"
+#include "render/resources/moving/scene_motion.hpp"
 #include "tests/gpu/support/kernel_comparison.hpp"
 
 namespace heliograph::test {

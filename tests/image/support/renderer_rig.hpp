@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "scene/camera.hpp"
+#include "scene/camera/camera.hpp"
 #include "tests/support/engine.hpp"
 #include "tests/support/image_comparison.hpp"
 #include "tests/support/scene_builder.hpp"

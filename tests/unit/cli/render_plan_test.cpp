@@ -29,7 +29,7 @@ scene::Scene box() {
 
 std::string failure(const protocol::RenderRequest& options, const scene::Scene& scene = box()) {
   try {
-    plan_shots(scene, options);
+    plan_shots(scene, scene.bounds, options);
   } catch (const std::runtime_error& error) {
     return error.what();
   }
@@ -54,13 +54,13 @@ TEST(FrameSize, OneSideGivesTheOther) {
 
 TEST(Shots, CamerasAreChosenByNameNumberOrAllOfThem) {
   protocol::RenderRequest options;
-  EXPECT_EQ(plan_shots(box(), options).at(0).camera.name, "front");
+  EXPECT_EQ(plan_shots(box(), box().bounds, options).at(0).camera.name, "front");
   options.camera = "side";
-  EXPECT_EQ(plan_shots(box(), options).at(0).camera.name, "side");
+  EXPECT_EQ(plan_shots(box(), box().bounds, options).at(0).camera.name, "side");
   options.camera = "2";
-  EXPECT_EQ(plan_shots(box(), options).at(0).camera.name, "side");
+  EXPECT_EQ(plan_shots(box(), box().bounds, options).at(0).camera.name, "side");
   options.camera = "all";
-  const auto shots = plan_shots(box(), options);
+  const auto shots = plan_shots(box(), box().bounds, options);
   ASSERT_EQ(shots.size(), 2u);
   EXPECT_EQ(shots[1].camera.name, "side");
   EXPECT_TRUE(shots[1].cut);
@@ -77,7 +77,7 @@ TEST(Shots, ASceneWithoutCamerasIsShownAsAWhole) {
   scene.cameras.clear();
   protocol::RenderRequest options;
   options.camera = "all";
-  EXPECT_EQ(plan_shots(scene, options).size(), 1u);
+  EXPECT_EQ(plan_shots(scene, scene.bounds, options).size(), 1u);
   options.camera = "1";
   EXPECT_NE(failure(options, scene).find("no cameras"), std::string::npos);
 }
@@ -85,17 +85,17 @@ TEST(Shots, ASceneWithoutCamerasIsShownAsAWhole) {
 TEST(Shots, AnOrbitAndAFitShowTheWholeScene) {
   protocol::RenderRequest options;
   options.orbit = {90.0f, 0.0f};
-  const scene::Camera right = plan_shots(box(), options).at(0).camera;
+  const scene::Camera right = plan_shots(box(), box().bounds, options).at(0).camera;
   EXPECT_EQ(right.name, "orbit");
   EXPECT_NEAR(glm::normalize(right.eye - right.target).x, 1.0f, 1e-6f);
   EXPECT_EQ(right.target, glm::vec3(1.0f, 0.0f, 0.0f));
   options.margin = 0.25;
-  EXPECT_GT(plan_shots(box(), options).at(0).camera.eye.x, right.eye.x + 1.0f);
+  EXPECT_GT(plan_shots(box(), box().bounds, options).at(0).camera.eye.x, right.eye.x + 1.0f);
   options.orbit.reset();
   EXPECT_NE(failure(options).find("--fit"), std::string::npos) << "the scene has cameras";
   options.fit = true;
   options.camera = "all";
-  const auto shots = plan_shots(box(), options);
+  const auto shots = plan_shots(box(), box().bounds, options);
   ASSERT_EQ(shots.size(), 2u);
   EXPECT_EQ(shots[1].camera.name, "side");
   EXPECT_NEAR(glm::normalize(shots[1].camera.eye - shots[1].camera.target).x, 1.0f, 1e-6f);
@@ -106,10 +106,10 @@ TEST(Shots, AFittedTurntableHasOneDistanceForAllFrames) {
   scene.cameras.clear();
   scene.bounds.include(glm::vec3(9.0f, 0.0f, 0.0f));
   protocol::RenderRequest options;
-  const float still =
-      glm::length(plan_shots(scene, options).at(0).camera.eye - glm::vec3(4.5f, 0, 0));
+  const float still = glm::length(plan_shots(scene, scene.bounds, options).at(0).camera.eye -
+                                  glm::vec3(4.5f, 0, 0));
   options.turntable = 8;
-  const auto shots = plan_shots(scene, options);
+  const auto shots = plan_shots(scene, scene.bounds, options);
   const float first = glm::distance(shots.at(0).camera.eye, scene.bounds.center());
   EXPECT_GT(first, still) << "its long side comes into view";
   for (const Shot& shot : shots) {
@@ -123,7 +123,7 @@ TEST(Shots, FramesOfAClipFollowEachOther) {
   options.time = 0.5;
   options.fps = 10.0;
   options.frames = 3;
-  const auto shots = plan_shots(box(), options);
+  const auto shots = plan_shots(box(), box().bounds, options);
   ASSERT_EQ(shots.size(), 3u);
   EXPECT_DOUBLE_EQ(shots[2].seconds, 0.7);
   EXPECT_EQ(shots[2].frame, 2u);
@@ -148,7 +148,7 @@ TEST(Shots, TimesBeyondTheClipAreTold) {
 TEST(Shots, ATurntableKeepsItsDistanceFromTheMiddleOfTheScene) {
   protocol::RenderRequest options;
   options.turntable = 4;
-  const auto shots = plan_shots(box(), options);
+  const auto shots = plan_shots(box(), box().bounds, options);
   ASSERT_EQ(shots.size(), 4u);
   const glm::vec3 middle(1.0f, 0.0f, 0.0f);
   EXPECT_EQ(shots[0].camera.eye, glm::vec3(1.0f, 0.5f, 4.0f));

@@ -39,6 +39,15 @@ struct ReferenceBeginBindings {
 };
 void reference_begin(const gpu::HostPass<ReferenceBeginBindings>& job);
 
+/// shaders/reference/reference_lens.comp
+template <class Stage>
+struct ReferenceLensBindings {
+  gpu::ReadBuffer<Stage, shared::RayCount> count;
+  gpu::ReadWriteBuffer<Stage, shared::Ray> rays;
+};
+using ReferenceLensJob = FrameJob<ReferenceLensBindings>;
+void reference_lens(const ReferenceLensJob& job);
+
 /// One vertex of every path. A pixel has at most one ray in each stream.
 void reference_bounce(const ReferenceBounceJob& job);
 

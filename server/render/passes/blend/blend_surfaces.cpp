@@ -6,7 +6,7 @@
 #include "render/passes/reflections/trace_specular.hpp"
 #include "render/passes/sampling/plan_samples.hpp"
 #include "render/resources/lights/light_table.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {

@@ -4,7 +4,7 @@
 #include "render/passes/compose/compose.hpp"
 #include "render/passes/frame_inputs.hpp"
 #include "render/passes/indirect/radiance_cache.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 
 namespace heliograph::render {
 

@@ -3,7 +3,7 @@
 #include "render/kernels/compose.hpp"
 #include "render/passes/frame_inputs.hpp"
 #include "render/resources/lights/light_table.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {

@@ -2,7 +2,7 @@
 
 #include "render/kernels/skybox.hpp"
 #include "render/passes/frame_inputs.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {

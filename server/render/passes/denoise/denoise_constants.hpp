@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "render/passes/frame_inputs.hpp"
-#include "render/resources/scene_motion.hpp"
+#include "render/resources/moving/scene_motion.hpp"
 #include "shaders/shared/denoise.h"
 
 namespace heliograph::render {

@@ -9,7 +9,7 @@
 #include "render/passes/denoise/denoise_constants.hpp"
 #include "render/passes/denoise/temporal.hpp"
 #include "render/passes/formats.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {

@@ -3,7 +3,7 @@
 #include "render/passes/frame_inputs.hpp"
 #include "render/passes/gbuffer/frustum.hpp"
 #include "render/resources/gbuffer_formats.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 
 namespace heliograph::render {
 namespace {

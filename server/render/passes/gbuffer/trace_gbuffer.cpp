@@ -8,7 +8,7 @@
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/section/section.hpp"
 #include "render/passes/shading/draw_shading.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {

@@ -7,8 +7,8 @@
 #include "render/passes/formats.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/resources/ground_plane.hpp"
-#include "render/resources/moving_scene.hpp"
-#include "render/resources/scene_motion.hpp"
+#include "render/resources/moving/moving_scene.hpp"
+#include "render/resources/moving/scene_motion.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {

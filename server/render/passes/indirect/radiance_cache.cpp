@@ -8,8 +8,8 @@
 #include "render/passes/lights/emissive_points.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/resources/lights/light_table.hpp"
-#include "render/resources/moving_scene.hpp"
-#include "render/resources/scene_motion.hpp"
+#include "render/resources/moving/moving_scene.hpp"
+#include "render/resources/moving/scene_motion.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {

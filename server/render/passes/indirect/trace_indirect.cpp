@@ -6,7 +6,7 @@
 #include "render/passes/lights/emissive_points.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/sampling/plan_samples.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {

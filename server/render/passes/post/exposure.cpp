@@ -7,7 +7,7 @@
 #include "render/passes/frame_inputs.hpp"
 #include "render/passes/post/mean_weight.hpp"
 #include "render/resources/environment/background.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 #include "shaders/shared/exposure.h"
 

@@ -1,7 +1,7 @@
 #include "render/passes/post/outline_selection.hpp"
 
 #include "render/kernels/post/outline.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "render/kernels/common/parallel.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 #include "shaders/shared/ray_mask.h"
 

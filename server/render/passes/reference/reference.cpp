@@ -3,9 +3,10 @@
 #include "render/passes/blend/blend_surfaces.hpp"
 #include "render/passes/formats.hpp"
 #include "render/passes/rays/ray_stream.hpp"
+#include "render/passes/reference/reference_lens.hpp"
 #include "render/passes/reference/trace_paths.hpp"
 #include "render/passes/section/section.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/reference.h"
@@ -51,6 +52,7 @@ class Wavefront {
         .write(paths_)
         .write(radiance_)
         .dispatch(gpu::each_pixel());
+    spread_over_lens(plan_, in_, rays_);
   }
 
   /// The hybrid's paths: the surface in view, one reflection, and nothing beyond.

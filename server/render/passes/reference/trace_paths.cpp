@@ -10,9 +10,10 @@
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/reference/reference.hpp"
+#include "render/passes/reference/reference_lens.hpp"
 #include "render/passes/section/section.hpp"
 #include "render/resources/lights/light_table.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
@@ -56,6 +57,7 @@ class PathRounds {
     auto current = declare_rays(plan_, "reference.path", capacity_, RayKind::reflection);
     auto next = declare_rays(plan_, "reference.next", capacity_, RayKind::reflection);
     camera_rays(plan_, in_, "reference.camera", current, rows_);
+    spread_over_lens(plan_, in_, current);
     // One for every bounce, and for every surface that a path goes straight on through.
     const std::uint32_t rounds = 1 + most_blended + bounces;
     for (std::uint32_t round = 0; round < rounds; ++round) {

@@ -8,7 +8,7 @@
 #include "render/passes/rays/sort_rays.hpp"
 #include "render/passes/sampling/plan_samples.hpp"
 #include "render/resources/lights/light_table.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {

@@ -3,7 +3,7 @@
 #include "render/kernels/sampling/sampling_plan.hpp"
 #include "render/kernels/temporal.hpp"
 #include "render/passes/frame_inputs.hpp"
-#include "render/resources/scene_motion.hpp"
+#include "render/resources/moving/scene_motion.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {

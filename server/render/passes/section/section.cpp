@@ -3,7 +3,7 @@
 #include "render/kernels/section/section.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/section/section_tracer.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {

@@ -28,6 +28,10 @@ class SectionTracer : public tracing::RayTracer {
       const scene::Scene& scene, const tracing::SceneBuffers& buffers) const override {
     return tracer_.build(scene, buffers);
   }
+  std::shared_ptr<const tracing::AccelerationStructure> build_apart(
+      const scene::Scene& scene, const tracing::SceneBuffers& buffers) const override {
+    return tracer_.build_apart(scene, buffers);
+  }
   std::shared_ptr<const tracing::AccelerationStructure> build_without(
       const std::vector<bool>& hidden, std::shared_ptr<const tracing::AccelerationStructure> rest,
       const scene::Scene& scene, const tracing::SceneBuffers& buffers) const override {

@@ -2,7 +2,7 @@
 
 #include "render/kernels/shading/shading_draw.hpp"
 #include "render/passes/rays/ray_stream.hpp"
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {

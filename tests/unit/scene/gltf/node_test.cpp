@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "scene/camera.hpp"
-#include "scene/camera_choice.hpp"
+#include "scene/camera/camera.hpp"
+#include "scene/camera/camera_choice.hpp"
 #include "tests/unit/scene/support/gltf_builder.hpp"
 
 namespace heliograph::scene::test {

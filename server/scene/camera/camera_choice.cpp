@@ -1,4 +1,4 @@
-#include "scene/camera_choice.hpp"
+#include "scene/camera/camera_choice.hpp"
 
 #include <algorithm>
 #include <charconv>

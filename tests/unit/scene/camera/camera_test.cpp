@@ -1,11 +1,11 @@
-#include "scene/camera.hpp"
+#include "scene/camera/camera.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "scene/camera_choice.hpp"
+#include "scene/camera/camera_choice.hpp"
 
 namespace heliograph::scene {
 namespace {

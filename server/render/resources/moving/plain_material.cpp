@@ -1,4 +1,4 @@
-#include "render/resources/plain_material.hpp"
+#include "render/resources/moving/plain_material.hpp"
 
 #include "shaders/shared/shading.h"
 

@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "render/api/section.hpp"
+#include "render/resources/moving/moving_parts.hpp"
 #include "render/resources/scene_resources.hpp"
-#include "scene/animation/pose.hpp"
+#include "scene/animation/explosion.hpp"
 #include "tracing/ray_tracer.hpp"
 
 namespace heliograph::render {
@@ -87,6 +88,11 @@ class MovingScene {
   /// What the next advance() goes to: a clip of this scene at `seconds`, or rest when null.
   /// @return whether that differs from where the scene is going already
   bool set_pose(const scene::Clip* clip, double seconds);
+  /// How far the parts of the scene are apart, scene::Explosion's amount; from the next advance()
+  /// on. Never while a frame runs, nor while a plan refers to the structure of a scene that comes
+  /// apart, or together.
+  /// @return whether it does: plans must be rebuilt
+  bool set_explosion(float amount);
   /// Whether another advance() would change anything: a new pose, or motion that has ended but is
   /// still the motion of the frame before.
   bool needs_advance() const;
@@ -100,7 +106,6 @@ class MovingScene {
   const scene::Pose& pose() const { return pose_; }
 
  private:
-  struct Moving;
   struct ChangedMaterials {
     gpu::Buffer table;  // shared::Material each, `count` of them
     std::size_t count;
@@ -113,6 +118,9 @@ class MovingScene {
   bool remake_emissive();
   std::vector<glm::mat4> shining_worlds() const;
   void list_shown_draws();
+  void make_movable();
+  void take_apart();
+  void assemble();
   void make_structure();
   void bind_tables();
   void move_things(const scene::Pose& before);
@@ -132,7 +140,13 @@ class MovingScene {
   std::vector<shared::Light> lights_;
   std::vector<shared::Light> previous_lights_;
   bool geometry_moved_ = false;
-  std::unique_ptr<Moving> moving_;  // null for scenes without clips
+  std::optional<MovingParts> moving_;  // absent as long as nothing can move
+  const scene::Clip* clip_ = nullptr;
+  double seconds_ = 0.0;
+  bool pose_is_new_ = false;
+  float explosion_amount_ = 0.0f;
+  std::optional<scene::Explosion> explosion_;                              // while parts are apart
+  std::shared_ptr<const tracing::AccelerationStructure> apart_structure_;  // likewise
   const tracing::RayTracer& tracer_;
   std::vector<bool> hidden_;  // by instance; empty: none
   std::vector<Draw> shown_draws_;

@@ -1,11 +1,11 @@
-#include "render/resources/scene_motion.hpp"
+#include "render/resources/moving/scene_motion.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <limits>
 
-#include "render/resources/moving_scene.hpp"
+#include "render/resources/moving/moving_scene.hpp"
 #include "shaders/shared/denoise.h"
 
 namespace heliograph::render {

@@ -1,10 +1,10 @@
-#include "scene/camera.hpp"
+#include "scene/camera/camera.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
-#include "scene/camera_choice.hpp"
+#include "scene/camera/camera_choice.hpp"
 
 namespace heliograph::scene {
 
