@@ -9,8 +9,10 @@
 #include "protocol/json/raw_json.hpp"
 #include "protocol/limits.hpp"
 #include "protocol/messages/kinds.hpp"
+#include "protocol/messages/session_messages.hpp"
 
-// Messages about sessions: their list, their viewers, control of them.
+// Messages about sessions: their list, their viewers, control of them, and what viewers show each
+// other.
 
 namespace heliograph::protocol {
 
@@ -192,6 +194,64 @@ struct SessionControl {
     };
   }
   bool operator==(const SessionControl&) const = default;
+};
+
+struct PointerSet {
+  std::optional<Vec3> position;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field(
+            "position", &PointerSet::position,
+            "The point of the scene under the pointer, world space; absent: it has left the view.")
+            .range(-max_coordinate, max_coordinate)
+            .unit("metres"),
+    };
+  }
+  bool operator==(const PointerSet&) const = default;
+};
+
+struct PointerChanged {
+  std::string viewer;
+  std::optional<std::string> name;
+  std::optional<Vec3> position;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("viewer", &PointerChanged::viewer, "The viewer whose pointer it is."),
+        field("name", &PointerChanged::name, "Display name of the viewer; null: not given.")
+            .or_null(),
+        field("position", &PointerChanged::position,
+              "What it points at, world space; null: it has left the view.")
+            .unit("metres")
+            .or_null(),
+    };
+  }
+  bool operator==(const PointerChanged&) const = default;
+};
+
+struct ViewerFollow {
+  std::optional<std::string> viewer;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("viewer", &ViewerFollow::viewer,
+              "Id of the viewer whose camera is taken over; absent: none from now on.")
+            .length(1, max_session_name),
+    };
+  }
+  bool operator==(const ViewerFollow&) const = default;
+};
+
+struct ViewerUnfollowed {
+  std::string viewer;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("viewer", &ViewerUnfollowed::viewer, "The viewer that was followed."),
+    };
+  }
+  bool operator==(const ViewerUnfollowed&) const = default;
 };
 
 struct SessionClosed {

@@ -179,6 +179,20 @@ export interface SessionJoinResult {
   viewer: string;
 }
 
+/** Parameters of viewer.follow. */
+export interface ViewerFollowParams {
+  /** Id of the viewer whose camera is taken over; absent: none from now on. */
+  viewer?: string;
+}
+
+/** Parameters of pointer.set. */
+export interface PointerSetParams {
+  /**
+   * The point of the scene under the pointer, world space; absent: it has left the view. [metres]
+   */
+  position?: Vector3;
+}
+
 export interface SessionListLimits {
   /** Idle time after which a session other than main is closed; 0: never. [seconds] */
   idle_timeout: number;
@@ -467,6 +481,11 @@ export interface Camera {
 export interface CameraSetParams {
   /** Position of the camera, world space. [metres] */
   eye?: Vector3;
+  /**
+   * Gives the field of view of a lens of this focal length before a sensor of the setting
+   * lens.sensor_height; instead of vertical_fov. [mm]
+   */
+  focal_length?: number;
   /**
    * A scene camera to start from, by its name or its number from 1 on; the other members are
    * applied on top.
@@ -1240,7 +1259,7 @@ export interface AnnotationsRemoveParams {
   id: number;
 }
 
-export interface JobCreateParamsEntriesView {
+export interface JobCreateParamsEntriesPathKeys {
   /** Position of the camera, world space. [metres] */
   eye: Vector3;
   /** The point at the centre of the image. [metres] */
@@ -1249,6 +1268,23 @@ export interface JobCreateParamsEntriesView {
   up?: Vector3;
   /** Vertical field of view. [degrees] */
   vertical_fov?: number;
+}
+
+export interface JobCreateParamsEntriesPath {
+  /** Whether it leads back to the first key. */
+  closed?: boolean;
+  /**
+   * smooth: through all keys without a corner, slowly at both ends; linear: at one speed from key
+   * to key.
+   */
+  easing?: "smooth" | "linear";
+  /**
+   * Where the camera is, at equal distances of time. Between two keys the target moves straight or
+   * along a spline, and the camera turns about it.
+   */
+  keys: JobCreateParamsEntriesPathKeys[];
+  /** Time from the first key to the last. [seconds] */
+  seconds?: number;
 }
 
 export interface JobCreateParamsEntries {
@@ -1283,6 +1319,10 @@ export interface JobCreateParamsEntries {
   orbit?: number[];
   /** Name of the file; {scene}, {camera} and {frame:04} stand for what is in the image. */
   output?: string;
+  /**
+   * Another camera, which moves; frames at the rate of fps, while the clip, if there is one, plays.
+   */
+  path?: JobCreateParamsEntriesPath;
   /** Preset of the denoiser; empty: none. */
   preset?: string;
   /** Ends an image when its expected structural similarity to the converged one is this. */
@@ -1304,7 +1344,7 @@ export interface JobCreateParamsEntries {
   /** Material variant; empty: the file's default. */
   variant?: string;
   /** Another camera than those of the scene. */
-  view?: JobCreateParamsEntriesView;
+  view?: JobCreateParamsEntriesPathKeys;
   /** Frame width; one side gives the other at 16:9. [pixels] */
   width?: number;
 }
@@ -1400,6 +1440,22 @@ export interface JobListResult {
 export interface JobStatusParams {
   /** The job's id. */
   job: string;
+}
+
+/** Parameters of the notification pointer.changed. */
+export interface PointerChangedNotification {
+  /** Display name of the viewer; null: not given. */
+  name: string | null;
+  /** What it points at, world space; null: it has left the view. [metres] */
+  position: Vector3 | null;
+  /** The viewer whose pointer it is. */
+  viewer: string;
+}
+
+/** Parameters of the notification viewer.unfollowed. */
+export interface ViewerUnfollowedNotification {
+  /** The viewer that was followed. */
+  viewer: string;
 }
 
 /** Parameters of the notification session.closed. */
@@ -1653,6 +1709,14 @@ export interface Methods {
    * camera can be changed there, also with a view token; session.join leads back.
    */
   "session.detach": { params: Empty; result: SessionJoinResult };
+  /**
+   * Gives this viewer, which has a camera of its own, the camera of another viewer of the same
+   * scene at once and whenever that moves, until either moves elsewhere or this viewer moves its
+   * camera itself.
+   */
+  "viewer.follow": { params: ViewerFollowParams; result: Empty };
+  /** Shows the other viewers what this viewer points at. */
+  "pointer.set": { params: PointerSetParams; result: Empty };
   /** Lists the sessions and their limits. */
   "session.list": { params: Empty; result: SessionList };
   /** Describes this session: its viewers and which of them have control. */
@@ -1841,6 +1905,10 @@ export interface Methods {
 export interface Notifications {
   /** A viewer joined, left or was given control of this session, or the frame size changed. */
   "session.changed": SessionInfo;
+  /** Another viewer points at something else, or no longer. */
+  "pointer.changed": PointerChangedNotification;
+  /** The viewer whose camera this one had has left or has another camera now. */
+  "viewer.unfollowed": ViewerUnfollowedNotification;
   /** This session was closed; the connection closes with code 4003. */
   "session.closed": SessionClosedNotification;
   /** The device was lost or has recovered; sessions keep everything except histories. */

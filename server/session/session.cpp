@@ -125,6 +125,22 @@ void Session::follow(const std::shared_ptr<Session>& follower, Session& leader) 
   followers.emplace_back(std::shared_ptr<SessionCore>(follower, &follower->core_));
 }
 
+void Session::follow_camera(const std::shared_ptr<Session>& follower, Session& source,
+                            const std::string& by) {
+  const std::lock_guard lock(source.core_.mutex);
+  source.core_.camera_followers.emplace_back(
+      std::shared_ptr<SessionCore>(follower, &follower->core_));
+  source.core_.lead_camera(by);
+}
+
+void Session::unfollow_camera(const Session& follower) {
+  const std::lock_guard lock(core_.mutex);
+  std::erase_if(core_.camera_followers, [&](const auto& weak) {
+    const auto core = weak.lock();
+    return !core || core.get() == &follower.core_;
+  });
+}
+
 void Session::set_buffers(std::vector<protocol::BufferInfo> buffers) {
   const std::lock_guard lock(core_.mutex);
   buffers_ = std::move(buffers);

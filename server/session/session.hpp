@@ -82,6 +82,10 @@ class Session {
   void copy_from(const Session& other);
   /// Follows the session that `follows` names from now on, beginning with its camera.
   static void follow(const std::shared_ptr<Session>& follower, Session& leader);
+  /// The camera of `follower` is that of `source` from now on, until `unfollow_camera`.
+  static void follow_camera(const std::shared_ptr<Session>& follower, Session& source,
+                            const std::string& by);
+  void unfollow_camera(const Session& follower);
   /// The session is removed from the registry, though it may still be referenced.
   void end();
   bool ended() const { return ended_; }

@@ -1,11 +1,44 @@
 #include "session/session_camera.hpp"
 
+#include <cmath>
+#include <glm/trigonometric.hpp>
+
+#include "protocol/json/json_values.hpp"
+#include "scene/animation/explosion.hpp"
 #include "session/nodes/node_properties.hpp"
 
 namespace heliograph::session {
 
 using protocol::Camera;
 using protocol::Result;
+
+namespace {
+
+/// Half the height of a sensor over the focal length: the tangent of half the field of view.
+double focal_length_of(double sensor_height, double field_of_view) {
+  return 0.5 * sensor_height / std::tan(glm::radians(0.5 * field_of_view));
+}
+
+/// A focal length as the field of view that it means. `sensor_height` in mm.
+Result<protocol::CameraSet> with_field_of_view(protocol::CameraSet request, float sensor_height) {
+  if (!request.focal_length) return request;
+  if (request.vertical_fov) {
+    return protocol::error::invalid("focal_length", "cannot be given beside vertical_fov");
+  }
+  const double shortest = focal_length_of(sensor_height, protocol::max_field_of_view);
+  const double longest = focal_length_of(sensor_height, protocol::min_field_of_view);
+  const double focal_length = *request.focal_length;
+  if (focal_length < shortest || focal_length > longest) {
+    return protocol::error::invalid(
+        "focal_length", "gives no valid field of view",
+        protocol::range_text({shortest, longest}) + " mm for this lens.sensor_height");
+  }
+  request.vertical_fov =
+      static_cast<float>(glm::degrees(2.0 * std::atan(0.5 * sensor_height / focal_length)));
+  return request;
+}
+
+}  // namespace
 
 Result<Camera> SessionCamera::get() const {
   const std::lock_guard lock(core_.mutex);
@@ -21,7 +54,9 @@ std::uint64_t SessionCamera::moves() const {
 Result<Camera> SessionCamera::set(const protocol::CameraSet& request, const std::string& by) {
   const std::lock_guard lock(core_.mutex);
   if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
-  if (const auto set = core_.camera.set(request, *core_.scene, by); !set) return set.error();
+  const auto chosen = with_field_of_view(request, core_.settings.lens.sensor_height);
+  if (!chosen) return chosen.error();
+  if (const auto set = core_.camera.set(*chosen, *core_.scene, by); !set) return set.error();
   return publish(by);
 }
 
@@ -35,10 +70,14 @@ Result<Camera> SessionCamera::orbit(const protocol::CameraOrbit& request, const 
 Result<Camera> SessionCamera::fit(const protocol::CameraFit& request, const std::string& by) {
   const std::lock_guard lock(core_.mutex);
   if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
-  scene::Bounds bounds = core_.scene->bounds;
+  const scene::Pose pose =
+      scene::shown_pose(*core_.scene, nullptr, 0.0, core_.settings.view.explode);
+  scene::Bounds bounds = core_.settings.view.explode > 0.0f
+                             ? scene::posed_bounds(*core_.scene, pose)
+                             : core_.scene->bounds;
   if (request.nodes) {
     if (const auto known = core_.nodes.check(*request.nodes, "nodes"); !known) return known.error();
-    bounds = node_bounds(*core_.scene, core_.nodes, *request.nodes);
+    bounds = node_bounds(*core_.scene, pose, core_.nodes, *request.nodes);
     if (bounds.empty()) return protocol::error::invalid("nodes", "have no meshes to show");
   }
   core_.camera.fit(bounds, core_.aspect());
@@ -49,6 +88,7 @@ Camera SessionCamera::publish(const std::string& by) {
   core_.changed();
   const protocol::CameraChanged message{.camera = core_.camera.message(core_.rev), .by = by};
   core_.notify_others_latest<protocol::notifications::camera_changed>(by, message);
+  core_.lead_camera(by);
   return message.camera;
 }
 

@@ -121,6 +121,7 @@ std::chrono::seconds SessionRegistry::idle_timeout_of(const Session& session) co
 void SessionRegistry::end(const std::shared_ptr<Session>& session, const std::string& reason) {
   const std::string& name = session->name();
   for (const auto& follower : followers_of(*session)) end(follower, reason);
+  for (const auto& viewer : session->viewers().participants({})) part(viewer.viewer, *session);
   sessions_.erase(name);
   origins_.erase(name);
   const protocol::SessionClosed closed{.session = name, .reason = reason};
@@ -203,6 +204,7 @@ Result<std::shared_ptr<Session>> SessionRegistry::move_locked(const std::string&
   if (!there || *there == here->second) return there;
   if (!(*there)->follows().empty() && !(*there)->viewers().empty()) return belongs_to_viewer();
   if (const auto moved = here->second->move_to(viewer, **there); !moved) return moved.error();
+  part(viewer, *here->second);
   const std::shared_ptr<Session> before = std::exchange(here->second, *there);
   before->announce();
   (*there)->announce();
@@ -244,7 +246,11 @@ std::vector<std::shared_ptr<Session>> SessionRegistry::followers_of(const Sessio
 /// A session for one viewer's camera is of no use without it.
 void SessionRegistry::end_if_left(const std::shared_ptr<Session>& session) {
   if (session->follows().empty() || session->ended() || !session->viewers().empty()) return;
+  const std::vector<std::shared_ptr<Session>> company = company_of(*session);
   end(session, "its viewer has left");
+  for (const auto& other : company) {
+    if (!other->ended()) other->announce();
+  }
 }
 
 Result<Resumed> SessionRegistry::resume(const std::string& viewer, const Origin& from,
@@ -289,6 +295,7 @@ void SessionRegistry::leave(const std::string& viewer) {
   const auto found = session_of_viewer_.find(viewer);
   if (found == session_of_viewer_.end()) return;
   const std::shared_ptr<Session> session = found->second;
+  part(viewer, *session);
   session->leave(viewer);
   session->announce();
   session_of_viewer_.erase(found);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -87,6 +88,17 @@ class SessionRegistry {
                                    std::optional<SessionOptions> options);
   void leave(const std::string& viewer);
 
+  // What viewers of one scene share beyond their sessions: those of a session and of all that
+  // follow it.
+
+  /// Shows all of them but the viewer itself what it points at; no position: nothing.
+  protocol::Result<void> point(const std::string& viewer, std::optional<protocol::Vec3> position);
+  /// The camera of the viewer, which must be its own, is from now on that of `followed`, another of
+  /// them. Ends when either leaves its session, which the viewer is told, or with `stop_following`.
+  protocol::Result<void> follow(const std::string& viewer, const std::string& followed);
+  /// The camera of the viewer stays where it is; does nothing while it follows no one.
+  void stop_following(const std::string& viewer);
+
   /// Of all sessions, ended ones included.
   ViewerTotals totals() const;
   std::size_t count() const;
@@ -101,6 +113,16 @@ class SessionRegistry {
   protocol::Result<std::shared_ptr<Session>> move_locked(const std::string& viewer,
                                                          const std::string& session);
   std::vector<std::shared_ptr<Session>> followers_of(const Session& leader) const;
+  /// All sessions that show the scene of this one: the one that it follows, or itself, and the
+  /// followers.
+  std::vector<std::shared_ptr<Session>> company_of(const Session& session) const;
+  std::shared_ptr<Session> session_of_viewer_locked(const std::string& viewer) const;
+  void show_pointer(const std::string& viewer, const Session& session,
+                    std::optional<protocol::Vec3> position);
+  bool follows_in_turn(const std::string& viewer, const std::string& followed) const;
+  void stop_following_locked(const std::string& viewer);
+  /// Ends what the viewer shares as a member of this session, before it leaves that.
+  void part(const std::string& viewer, const Session& session);
   void end_if_left(const std::shared_ptr<Session>& session);
   bool is_available(const std::string& viewer, const std::string& name) const;
   std::string resumed_name(const Origin& from);
@@ -117,7 +139,9 @@ class SessionRegistry {
   mutable std::mutex mutex_;
   Sessions sessions_;
   std::map<std::string, std::shared_ptr<Session>> session_of_viewer_;
-  std::map<std::string, Origin> origins_;  // of sessions that replace lost ones
+  std::set<std::string> pointing_;               // viewers whose pointers others see
+  std::map<std::string, std::string> followed_;  // whose camera viewers have, by their ids
+  std::map<std::string, Origin> origins_;        // of sessions that replace lost ones
   std::uint64_t viewer_count_ = 0;
   std::uint64_t name_count_ = 0;
   std::uint64_t opened_ = 0;

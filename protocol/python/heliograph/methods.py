@@ -190,6 +190,7 @@ class Camera(_Group):
             self,
             *,
             eye: List[float] = _UNSET,
+            focal_length: float = _UNSET,
             name: str = _UNSET,
             seq: int = _UNSET,
             target: List[float] = _UNSET,
@@ -198,6 +199,8 @@ class Camera(_Group):
         """Sets the camera; absent members keep their values.
 
         eye: Position of the camera, world space. [metres]
+        focal_length: Gives the field of view of a lens of this focal length before a sensor of
+            the setting lens.sensor_height; instead of vertical_fov. [mm]
         name: A scene camera to start from, by its name or its number from 1 on; the other
             members are applied on top.
         seq: The client's sequence number; frames that show this camera echo it as
@@ -209,8 +212,8 @@ class Camera(_Group):
         Returns: eye, fitted, name, rev, target, up, vertical_fov.
         """
         return self._call("camera.set", _given({
-            "eye": eye, "name": name, "seq": seq, "target": target, "up": up,
-            "vertical_fov": vertical_fov}))
+            "eye": eye, "focal_length": focal_length, "name": name, "seq": seq,
+            "target": target, "up": up, "vertical_fov": vertical_fov}))
 
     def orbit(
             self,
@@ -569,6 +572,16 @@ class Nodes(_Group):
         Returns: hidden, isolated, rev.
         """
         return self._call("nodes.isolate", _given({"nodes": nodes}))
+
+
+class Pointer(_Group):
+    def set(self, *, position: List[float] = _UNSET) -> Dict[str, Any]:
+        """Shows the other viewers what this viewer points at.
+
+        position: The point of the scene under the pointer, world space; absent: it has left the
+            view. [metres]
+        """
+        return self._call("pointer.set", _given({"position": position}))
 
 
 class Reference(_Group):
@@ -942,6 +955,17 @@ class Stream(_Group):
             "frame_seq": frame_seq, "decode_us": decode_us, "present_us": present_us}))
 
 
+class Viewer(_Group):
+    def follow(self, *, viewer: str = _UNSET) -> Dict[str, Any]:
+        """Gives this viewer, which has a camera of its own, the camera of another viewer of the
+        same scene at once and whenever that moves, until either moves elsewhere or this
+        viewer moves its camera itself.
+
+        viewer: Id of the viewer whose camera is taken over; absent: none from now on.
+        """
+        return self._call("viewer.follow", _given({"viewer": viewer}))
+
+
 class Methods:
     """The methods in their groups; `call(method, params)` executes them."""
 
@@ -959,6 +983,7 @@ class Methods:
         self.materials = Materials(call)
         self.measurements = Measurements(call)
         self.nodes = Nodes(call)
+        self.pointer = Pointer(call)
         self.reference = Reference(call)
         self.rpc = Rpc(call)
         self.scene = Scene(call)
@@ -968,6 +993,7 @@ class Methods:
         self.settings = Settings(call)
         self.stats = Stats(call)
         self.stream = Stream(call)
+        self.viewer = Viewer(call)
 
     def hello(
             self,

@@ -6,6 +6,7 @@ namespace methods = protocol::methods;
 
 using protocol::Completion;
 using protocol::Empty;
+using protocol::PointerSet;
 using protocol::Result;
 using protocol::SessionChoice;
 using protocol::SessionControl;
@@ -13,6 +14,7 @@ using protocol::SessionCreate;
 using protocol::SessionInfo;
 using protocol::SessionJoined;
 using protocol::SessionList;
+using protocol::ViewerFollow;
 namespace error = protocol::error;
 
 namespace {
@@ -40,6 +42,18 @@ SessionList list_sessions(const SessionHost& host, const std::string& viewer) {
       .pixels_used = host.sessions().pixels_used(),
       .idle_timeout = static_cast<std::uint32_t>(limits.idle_timeout.count())};
   return list;
+}
+
+Result<Empty> follow(SessionRegistry& sessions, const ViewerFollow& request,
+                     const std::string& viewer) {
+  if (!request.viewer) {
+    sessions.stop_following(viewer);
+    return Empty();
+  }
+  if (const auto followed = sessions.follow(viewer, *request.viewer); !followed) {
+    return followed.error();
+  }
+  return Empty();
 }
 
 /// Viewers can close the session that they control; any client can close an empty one.
@@ -88,6 +102,17 @@ void add_session_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
                                        [&](Session&, const Empty&, const std::string& viewer) {
                                          return joined_session(host.detach(viewer), viewer);
                                        });
+  add_command<methods::viewer_follow>(
+      dispatcher, host, [&](Session&, const ViewerFollow& request, const std::string& viewer) {
+        return follow(host.sessions(), request, viewer);
+      });
+  add_command<methods::pointer_set>(
+      dispatcher, host,
+      [&](Session&, const PointerSet& request, const std::string& viewer) -> Result<Empty> {
+        const auto shown = host.sessions().point(viewer, request.position);
+        if (!shown) return shown.error();
+        return Empty();
+      });
   add_command<methods::session_list>(
       dispatcher, host,
       [&](Session&, const Empty&, const std::string& viewer) -> Result<SessionList> {

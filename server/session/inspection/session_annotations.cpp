@@ -51,10 +51,7 @@ Result<AnnotationList> SessionAnnotations::clear(const std::string& by) {
 }
 
 std::string SessionAnnotations::name_of(const std::string& viewer) const {
-  for (const protocol::ViewerInfo& one : core_.viewers.participants(viewer)) {
-    if (one.you) return one.name.value_or("");
-  }
-  return {};
+  return core_.viewers.name_of(viewer).value_or("");
 }
 
 }  // namespace heliograph::session

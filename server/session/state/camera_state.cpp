@@ -8,8 +8,8 @@
 #include "protocol/json/json_values.hpp"
 #include "protocol/json/suggestions.hpp"
 #include "scene/animation/pose.hpp"
-#include "scene/camera.hpp"
-#include "scene/camera_choice.hpp"
+#include "scene/camera/camera.hpp"
+#include "scene/camera/camera_choice.hpp"
 #include "session/library/scene_description.hpp"
 
 namespace heliograph::session {
@@ -119,6 +119,14 @@ void CameraState::copy_from(const CameraState& other) {
   name_ = other.name_;
   fitted_ = other.fitted_;
   discontinuities_ = other.discontinuities_ + 1;
+}
+
+void CameraState::take_over(const CameraState& other) {
+  if (std::exchange(taken_over_, other.discontinuities_) != other.discontinuities_) {
+    ++discontinuities_;
+  }
+  move(other.camera_, other.name_);
+  fitted_ = other.fitted_;
 }
 
 void CameraState::reset(const scene::Scene& scene, float aspect) {

@@ -66,6 +66,20 @@ void SessionCore::follow(const SessionCore& leader) {
   changed();
 }
 
+void SessionCore::lead_camera(const std::string& by) {
+  for (const auto& weak : camera_followers) {
+    const auto follower = weak.lock();
+    if (!follower) continue;
+    const std::lock_guard lock(follower->mutex);
+    if (follower->scene != scene) continue;  // a new scene brings both its camera
+    follower->camera.take_over(camera);
+    follower->changed();
+    follower->notify_others_latest<protocol::notifications::camera_changed>(
+        {}, {.camera = follower->camera.message(follower->rev), .by = by});
+    follower->lead_camera(by);
+  }
+}
+
 RenderState SessionCore::snapshot() const {
   const AnimationClock& clock = timeline.clock();
   return {.version = version,

@@ -44,7 +44,9 @@ class Measurements;
 ///
 /// A session may be followed by others, which have its scene, settings and time with a camera of
 /// their own: `changed` and `notify_others` pass changes on to them, under both locks, that of the
-/// leader first.
+/// leader first. The cameras of these may take over those of others of them or of the leader:
+/// `lead_camera` locks each of these after its own, and SessionRegistry keeps them from closing a
+/// circle.
 struct SessionCore {
   SessionCore(SessionOptions session_options, std::shared_ptr<WakeEvent> wake_event,
               Measurements* session_measurements);
@@ -55,6 +57,8 @@ struct SessionCore {
   void lead() const;
   /// Takes over what followers share with this session, if it differs; under the leader's lock.
   void follow(const SessionCore& leader);
+  /// Passes the camera on to the sessions that take it over; `by`: the viewer that has moved it.
+  void lead_camera(const std::string& by);
   /// Everything that a frame depends on.
   RenderState snapshot() const;
   protocol::Result<void> require_scene() const;
@@ -125,6 +129,7 @@ struct SessionCore {
   CaptureQueue captures;
   ReferenceMode reference;
   std::vector<std::weak_ptr<SessionCore>> followers;
+  std::vector<std::weak_ptr<SessionCore>> camera_followers;
 };
 
 }  // namespace heliograph::session

@@ -71,6 +71,8 @@ class ViewerSet {
   void start(const std::string& viewer, protocol::StreamCodec codec = protocol::StreamCodec::jpeg);
 
   void set_name(const std::string& viewer, std::string name);
+  /// Its display name, if it has one.
+  std::optional<std::string> name_of(const std::string& viewer) const;
   /// Whether a caller may change the session; empty for one without a stream.
   bool may_change(const std::string& viewer) const;
   protocol::Result<void> change_control(const protocol::SessionControl& request,

@@ -109,6 +109,12 @@ void ViewerSet::set_name(const std::string& viewer, std::string name) {
   if (const Result<Viewer*> found = find(viewer)) (*found)->name = std::move(name);
 }
 
+std::optional<std::string> ViewerSet::name_of(const std::string& viewer) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = viewers_.find(viewer);
+  return found == viewers_.end() ? std::nullopt : found->second.name;
+}
+
 bool ViewerSet::may_change(const std::string& viewer) const {
   const std::lock_guard lock(mutex_);
   return may_change_locked(viewer);

@@ -62,6 +62,25 @@ class Nodes(ServerTestCase):
         self.assertAlmostEqual((low[0] + high[0]) / 2, 3, places=3)
         self.assertEqual(len(wheel["materials"]), 1)
 
+    def test_an_exploded_view_moves_parts_apart(self):
+        wheel = self.node("Wheel")["id"]
+        whole, properties = self.image(), self.server.call("nodes.info", {"nodes": [wheel]})
+        eye = self.server.call("camera.get")["eye"]
+        self.server.call("camera.fit", {"nodes": [wheel]})
+        self.assertEqual(self.server.call("scene.pick", {"x": 0.5, "y": 0.5})["node"], wheel)
+        self.server.call("settings.patch", {"patch": {"view": {"explode": 2}}})
+        self.assertNotEqual(self.server.call("scene.pick", {"x": 0.5, "y": 0.5})["node"], wheel)
+        self.assertEqual(self.server.call("nodes.info", {"nodes": [wheel]}), properties)
+        # Into the view where it is now.
+        self.server.call("camera.fit", {"nodes": [wheel]})
+        self.assertEqual(self.server.call("scene.pick", {"x": 0.5, "y": 0.5})["node"], wheel)
+        self.server.call("camera.fit")
+        farther = self.server.call("camera.get")["eye"]
+        self.assertGreater(sum(e * e for e in farther), 1.5 * sum(e * e for e in eye))
+        self.server.call("settings.patch", {"patch": {"view": {"explode": None}}})
+        self.server.call("camera.fit")
+        self.assertLess(difference(self.image(), whole), 0.5)
+
     def test_hidden_nodes_vanish_from_image_and_pick(self):
         axle, wheel = self.node("axle")["id"], self.node("Wheel")["id"]
         self.server.call("camera.fit", {"nodes": [wheel]})

@@ -79,6 +79,17 @@ class Methods(ServerTestCase):
         self.assertGreater(moved["rev"], before["rev"])
         self.assertEqual(self.server.call("camera.get"), moved)
 
+    def test_a_focal_length_gives_the_field_of_view(self):
+        camera = self.server.call("camera.set", {"focal_length": 12})
+        self.assertAlmostEqual(camera["vertical_fov"], 90, places=3)
+        self.server.call("settings.patch", {"patch": {"lens": {"sensor_height": 36}}})
+        camera = self.server.call("camera.set", {"focal_length": 18})
+        self.assertAlmostEqual(camera["vertical_fov"], 90, places=3)
+        for params in ({"focal_length": 50, "vertical_fov": 30}, {"focal_length": 1}):
+            self.assert_error(self.server.ask("camera.set", params), -32602, path="focal_length")
+        self.assertEqual(self.server.call("camera.get"), camera)
+        self.server.call("settings.patch", {"patch": {"lens": None}})
+
     def test_bad_cameras_are_refused_and_change_nothing(self):
         before = self.server.call("camera.get")
         for params, path in (({"eye": before["target"]}, "eye"),

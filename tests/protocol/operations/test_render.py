@@ -1,5 +1,6 @@
 """The command `heliograph render`, as its users call it."""
 
+import json
 import os
 import shutil
 import subprocess
@@ -102,6 +103,39 @@ class Render(unittest.TestCase):
         self.assertGreater(difference(self.image("00.png"), self.image("02.png")), 1)
         self.renders(self.two, "-o", "still.png", *SMALL)
         self.assertLess(difference(self.image("00.png"), self.image("still.png")), 0.5)
+
+    def camera_path(self, **members):
+        """A file of a path that leads from the right of the scene to its front."""
+        path = os.path.join(self.scenes.name, "path.json")
+        keys = [{"eye": [4, 1, 0], "target": [0, 0, 0]}, {"eye": [0, 1, 4], "target": [0, 0, 0]}]
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump({"keys": keys, **members}, file)
+        return path
+
+    def test_a_camera_moves_along_a_path(self):
+        arguments = (self.two, "-o", "{frame:02}.png", "--fps", "5", *SMALL)
+        files = self.renders(*arguments, "--path", self.camera_path(seconds=1))
+        self.assertEqual(files, ["00.png", "01.png", "02.png", "03.png", "04.png"])
+        open_end = self.image("04.png")
+        way = difference(self.image("00.png"), open_end)
+        self.assertGreater(way, 1)
+        self.renders(*arguments, "--path", self.camera_path(seconds=2, closed=True))
+        self.assertLess(difference(self.image("05.png"), open_end), way / 2, "half of the way")
+
+    def test_paths_that_cannot_be_followed_are_told(self):
+        arguments = (self.two, "-o", "{frame:02}.png", *SMALL)
+        self.refuses("number of frames", *arguments, "--path", self.camera_path(), "--turntable", "3")
+        self.refuses("--camera", *arguments, "--path", self.camera_path(), "--camera", "1")
+        self.refuses(r"keys", *arguments, "--path", self.camera_path(keys=[]))
+        self.refuses(r"seconds: .*0\.1 to 3600", *arguments, "--path", self.camera_path(seconds=0))
+        same = [{"eye": [1, 0, 0], "target": [1, 0, 0]}] * 2
+        self.refuses("coincide", *arguments, "--path", self.camera_path(keys=same))
+
+    def test_an_exploded_view_fits_into_the_image(self):
+        for name, amount in (("whole.png", "0"), ("apart.png", "2")):
+            self.renders(self.two, "-o", name, "--orbit", "20,20", *SMALL, "--set",
+                         f"view.explode={amount}")
+        self.assertGreater(difference(self.image("whole.png"), self.image("apart.png")), 1)
 
     def test_a_broken_scene_fails_alone(self):
         missing = os.path.join(self.scenes.name, "missing.glb")

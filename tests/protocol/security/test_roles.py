@@ -19,7 +19,8 @@ COMMANDS = """
     measurements.add measurements.remove measurements.clear measurements.unit
     annotations.add annotations.edit annotations.remove annotations.clear
     """.split()
-PERSONAL = "stream.pause stream.resume stream.ack stream.configure stats.subscribe".split()
+PERSONAL = ("stream.pause stream.resume stream.ack stream.configure stats.subscribe pointer.set "
+            "viewer.follow").split()
 
 
 def bearer(token):

@@ -1,0 +1,209 @@
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "session/session_registry.hpp"
+#include "tests/unit/session/recording_link.hpp"
+
+// What viewers of one scene share beyond their sessions: pointers, and cameras of other viewers.
+
+namespace heliograph::session {
+namespace {
+
+using nlohmann::json;
+using protocol::ErrorCode;
+using protocol::Vec3;
+using test::RecordingLink;
+
+class SessionCompanyTest : public testing::Test {
+ protected:
+  SessionCompanyTest()
+      : registry_(
+            {}, sized(""),
+            [](SessionOptions options, PixelShare pixels) {
+              return std::make_shared<Session>(std::move(options), std::make_shared<WakeEvent>(),
+                                               std::move(pixels));
+            },
+            [](const Session&) {}) {
+    auto scene = std::make_shared<scene::Scene>();
+    scene->bounds.include(glm::vec3(-1.0f));
+    scene->bounds.include(glm::vec3(1.0f));
+    registry_.main()->scene().show({.name = "box", .scene = scene, .resources = nullptr}, "");
+  }
+
+  static SessionOptions sized(std::string name) {
+    SessionOptions options;
+    options.name = std::move(name);
+    options.width = 20;
+    options.height = 10;
+    return options;
+  }
+  std::string enter(const std::string& session = "main") {
+    const auto link = std::make_shared<RecordingLink>();
+    const auto id = registry_.enter(session, link);
+    EXPECT_TRUE(id) << id.error().message;
+    links_[*id] = link;
+    return *id;
+  }
+  std::string enter_detached() {
+    std::string id = enter();
+    const auto view = registry_.detach(id, sized(""));
+    EXPECT_TRUE(view) << view.error().message;
+    return id;
+  }
+  /// Parameters of the newest notification of this name; null if there is none.
+  json heard(const std::string& viewer, const std::string& method) {
+    const auto& messages = links_.at(viewer)->messages;
+    for (auto it = messages.rbegin(); it != messages.rend(); ++it) {
+      if (it->at("method") == method) return it->at("params");
+    }
+    return nullptr;
+  }
+  Vec3 move(const std::string& viewer, Vec3 eye) {
+    const auto moved = registry_.session_of_viewer(viewer)->camera().set({.eye = eye}, viewer);
+    EXPECT_TRUE(moved) << moved.error().message;
+    return moved->eye;
+  }
+  Vec3 eye_of(const std::string& viewer) {
+    return registry_.session_of_viewer(viewer)->camera().get()->eye;
+  }
+
+  std::map<std::string, std::shared_ptr<RecordingLink>> links_;
+  SessionRegistry registry_;
+};
+
+TEST_F(SessionCompanyTest, APointerIsShownToAllWhoSeeTheScene) {
+  const std::string ada = enter();
+  const std::string bob = enter();
+  const std::string detached = enter_detached();
+  ASSERT_TRUE(registry_.create(sized("other")));
+  const std::string elsewhere = enter("other");
+  registry_.main()->viewers().set_name(ada, "Ada");
+  ASSERT_TRUE(registry_.point(ada, Vec3{1, 2, 3}));
+  const json shown = {{"viewer", ada}, {"name", "Ada"}, {"position", {1.0, 2.0, 3.0}}};
+  EXPECT_EQ(heard(bob, "pointer.changed"), shown);
+  EXPECT_EQ(heard(detached, "pointer.changed"), shown);
+  EXPECT_EQ(heard(ada, "pointer.changed"), nullptr);
+  EXPECT_EQ(heard(elsewhere, "pointer.changed"), nullptr);
+  EXPECT_EQ(links_.at(bob)->keys.back(), "pointer.changed " + ada) << "the newest replaces others";
+
+  ASSERT_TRUE(registry_.point(detached, Vec3{0, 0, 0}));
+  EXPECT_EQ(heard(ada, "pointer.changed")["viewer"], detached);
+  EXPECT_EQ(registry_.point("v99", {}).error().code, ErrorCode::not_ready);
+}
+
+TEST_F(SessionCompanyTest, APointerIsHiddenOnceWhenItsViewerLeaves) {
+  const std::string ada = enter();
+  const std::string bob = enter();
+  registry_.leave(enter());
+  EXPECT_EQ(heard(bob, "pointer.changed"), nullptr) << "it had no pointer";
+  ASSERT_TRUE(registry_.point(ada, Vec3{1, 2, 3}));
+  ASSERT_TRUE(registry_.point(ada, {}));
+  EXPECT_EQ(heard(bob, "pointer.changed")["position"], nullptr);
+  links_.at(bob)->messages.clear();
+  ASSERT_TRUE(registry_.point(ada, {}));
+  EXPECT_EQ(heard(bob, "pointer.changed"), nullptr) << "it was hidden already";
+  ASSERT_TRUE(registry_.point(ada, Vec3{1, 2, 3}));
+  registry_.leave(ada);
+  EXPECT_EQ(heard(bob, "pointer.changed")["viewer"], ada);
+  EXPECT_EQ(heard(bob, "pointer.changed")["position"], nullptr);
+}
+
+TEST_F(SessionCompanyTest, AViewerTakesOverTheCameraOfAnotherUntilItStops) {
+  const std::string ada = enter_detached();
+  const std::string bob = enter_detached();
+  move(ada, {5, 0, 0});
+  ASSERT_TRUE(registry_.follow(bob, ada));
+  EXPECT_EQ(eye_of(bob), (Vec3{5, 0, 0})) << "at once";
+  EXPECT_EQ(heard(bob, "camera.changed")["by"], ada);
+  move(ada, {0, 6, 1});
+  EXPECT_EQ(eye_of(bob), (Vec3{0, 6, 1}));
+  EXPECT_EQ(heard(bob, "camera.changed")["camera"]["eye"], json({0.0, 6.0, 1.0}));
+  registry_.stop_following(bob);
+  move(ada, {7, 0, 0});
+  EXPECT_EQ(eye_of(bob), (Vec3{0, 6, 1}));
+  EXPECT_EQ(heard(bob, "viewer.unfollowed"), nullptr) << "it knows";
+}
+
+TEST_F(SessionCompanyTest, TheSharedCameraCanBeFollowedAndFollowersOfFollowersMove) {
+  const std::string ada = enter();
+  const std::string bob = enter_detached();
+  const std::string eve = enter_detached();
+  ASSERT_TRUE(registry_.follow(bob, ada));
+  ASSERT_TRUE(registry_.follow(eve, bob));
+  move(ada, {0, 0, 9});
+  EXPECT_EQ(eye_of(bob), (Vec3{0, 0, 9}));
+  EXPECT_EQ(eye_of(eve), (Vec3{0, 0, 9}));
+  move(bob, {3, 0, 0});
+  EXPECT_EQ(eye_of(eve), (Vec3{3, 0, 0}));
+  EXPECT_EQ(eye_of(ada), (Vec3{0, 0, 9}));
+}
+
+TEST_F(SessionCompanyTest, FollowingIsRefusedWhereItCannotBe) {
+  const std::string ada = enter_detached();
+  const std::string bob = enter_detached();
+  const std::string eve = enter_detached();
+  const std::string shared = enter();
+  EXPECT_EQ(registry_.follow(shared, ada).error().code, ErrorCode::conflict);
+  EXPECT_EQ(registry_.follow(ada, ada).error().code, ErrorCode::not_found);
+  EXPECT_EQ(registry_.follow(ada, "v99").error().path, "viewer");
+  EXPECT_EQ(registry_.follow("v99", ada).error().code, ErrorCode::not_ready);
+  ASSERT_TRUE(registry_.create(sized("other")));
+  EXPECT_EQ(registry_.follow(ada, enter("other")).error().code, ErrorCode::not_found);
+  ASSERT_TRUE(registry_.follow(bob, ada));
+  ASSERT_TRUE(registry_.follow(eve, bob));
+  EXPECT_EQ(registry_.follow(ada, eve).error().code, ErrorCode::conflict) << "a circle";
+  registry_.stop_following(bob);
+  ASSERT_TRUE(registry_.follow(ada, eve));
+  move(bob, {2, 0, 0});
+  EXPECT_EQ(eye_of(ada), (Vec3{2, 0, 0}));
+}
+
+TEST_F(SessionCompanyTest, FollowingEndsWhenEitherViewerLeavesItsSession) {
+  const std::string ada = enter_detached();
+  const std::string bob = enter_detached();
+  ASSERT_TRUE(registry_.follow(bob, ada));
+  ASSERT_TRUE(registry_.move(ada, "main"));
+  EXPECT_EQ(heard(bob, "viewer.unfollowed"), json({{"viewer", ada}}));
+  links_.at(bob)->messages.clear();
+  move(ada, {4, 0, 0});
+  EXPECT_NE(eye_of(bob), (Vec3{4, 0, 0}));
+
+  ASSERT_TRUE(registry_.follow(bob, ada));
+  ASSERT_TRUE(registry_.move(bob, "main"));
+  move(ada, {5, 0, 0});
+  registry_.leave(ada);
+  EXPECT_EQ(heard(bob, "viewer.unfollowed"), nullptr) << "it followed no one any more";
+
+  ASSERT_TRUE(registry_.detach(bob, sized("")));
+  const std::string eve = enter();
+  ASSERT_TRUE(registry_.follow(bob, eve));
+  registry_.leave(eve);
+  EXPECT_EQ(heard(bob, "viewer.unfollowed"), json({{"viewer", eve}}));
+}
+
+TEST_F(SessionCompanyTest, AllEndsWithTheSessionThatTheyFollow) {
+  ASSERT_TRUE(registry_.create(sized("review")));
+  const std::string ada = enter("review");
+  const std::string bob = enter("review");
+  ASSERT_TRUE(registry_.detach(ada, sized("")));
+  ASSERT_TRUE(registry_.detach(bob, sized("")));
+  ASSERT_TRUE(registry_.follow(bob, ada));
+  ASSERT_TRUE(registry_.point(ada, Vec3{1, 2, 3}));
+  ASSERT_TRUE(registry_.close("review", "the end"));
+  EXPECT_EQ(registry_.count(), 1u);
+  EXPECT_EQ(links_.at(ada)->close_reason, "the end");
+  EXPECT_EQ(links_.at(bob)->close_reason, "the end");
+}
+
+TEST_F(SessionCompanyTest, ThoseWhoStayHearThatAViewWithItsOwnCameraHasEnded) {
+  const std::string ada = enter_detached();
+  const std::string bob = enter();
+  registry_.main()->viewers().start(bob);
+  links_.at(bob)->messages.clear();
+  registry_.leave(ada);
+  EXPECT_NE(heard(bob, "session.changed"), nullptr);
+}
+
+}  // namespace
+}  // namespace heliograph::session
