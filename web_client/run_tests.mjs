@@ -1,4 +1,4 @@
-// Bundles tests/*.test.ts for this version of Node and runs them with its own test runner.
+// Bundles the *.test.ts below tests/ for this version of Node and runs them with its own test runner.
 
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readdirSync, rmSync } from "node:fs";
@@ -12,7 +12,7 @@ const folder = mkdtempSync(join(tmpdir(), "heliograph-web-tests-"));
 try {
   await esbuild.build({
     absWorkingDir: here,
-    entryPoints: readdirSync(join(here, "tests"))
+    entryPoints: readdirSync(join(here, "tests"), { recursive: true })
       .filter((name) => name.endsWith(".test.ts"))
       .map((name) => `tests/${name}`),
     outdir: folder,
@@ -24,7 +24,9 @@ try {
     sourcemap: "inline",
     logLevel: "warning",
   });
-  const files = readdirSync(folder).map((name) => join(folder, name));
+  const files = readdirSync(folder, { recursive: true })
+    .filter((name) => name.endsWith(".mjs"))
+    .map((name) => join(folder, name));
   const run = spawnSync(process.execPath, ["--enable-source-maps", "--test", ...files], {
     stdio: "inherit",
   });

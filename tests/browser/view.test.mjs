@@ -69,7 +69,8 @@ stage.test("W flies forward, D to the right, and dragging during flight looks ar
 });
 
 stage.test("a drag orbits around the point that was clicked", async () => {
-  const { page } = await stage.watch({ reducedMotion: "reduce" }); // no inertia
+  // No inertia, and no questions about what the pointer shows to others.
+  const { page } = await stage.watch({ reducedMotion: "reduce", stored: { pointer: "0" } });
   await setCamera(page, stage.server, { eye: [0, 1.5, 6], target: [0, 0.6, 0] });
   const at = { x: 0.25, y: 0.8 };
   const { position } = await stage.server.call("scene.pick", at);

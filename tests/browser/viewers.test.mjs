@@ -1,6 +1,7 @@
 // Several viewers, small screens, and a restart of the server.
 
 import assert from "node:assert/strict";
+import { seriousFindings } from "./harness/axe.mjs";
 import {
   distance,
   doubleClick,
@@ -94,6 +95,120 @@ stage.test("a page that joins others leaves the camera that the server has fitte
   await settle(phone.page, stage.server);
   await phone.page.waitForFunction(() => window.seen.answered["bookmarks.list"] > 0);
   assert.deepEqual((await stage.server.call("camera.get")).eye, eye);
+});
+
+const openParticipants = (page) => page.getByRole("button", { name: "Participants" }).click();
+const participantCount = (page) => page.locator(".participants-count").textContent();
+
+/** Two viewers, the first of which is Ada. */
+async function adaAndAnother() {
+  const first = await stage.watch({ viewport: { width: 960, height: 540 } });
+  const second = await stage.watch({ viewport: { width: 960, height: 540 } });
+  await openParticipants(first.page);
+  await first.page.getByRole("textbox", { name: "Your name" }).fill("Ada");
+  await first.page.getByRole("textbox", { name: "Your name" }).press("Enter");
+  await first.page.keyboard.press("Escape");
+  for (const { page } of [first, second]) {
+    await eventually(async () => (await participantCount(page)) === "2", "two viewers");
+  }
+  return { ada: first.page, other: second.page };
+}
+
+stage.test("a viewer sees what another one points at, with its name", async () => {
+  await stage.server.call("camera.fit");
+  const { ada, other } = await adaAndAnother();
+  await settle(ada, stage.server);
+  await ada.mouse.move(300, 330);
+  await ada.mouse.move(310, 340, { steps: 3 });
+  const label = other.locator(".pointer span");
+  await label.waitFor();
+  await eventually(async () => (await label.textContent()) === "Ada", "her name");
+  const tip = () =>
+    other.locator(".pointer").evaluate((node) => {
+      const { left, top } = node.getBoundingClientRect();
+      return [left, top];
+    });
+  await eventually(async () => {
+    const [x, y] = await tip();
+    return Math.hypot(x - 310, y - 340) < 8;
+  }, "the arrow at the same place of the view");
+  assert.equal(await ada.locator(".pointer").count(), 0, "a pointer of its own");
+  await screenshot(other, "pointer");
+  await other.emulateMedia({ colorScheme: "light" });
+  await screenshot(other, "pointer_light");
+  assert.deepEqual(await seriousFindings(other), []);
+
+  // It stays at its point of the scene, and goes with its viewer.
+  await stage.server.call("camera.orbit", { yaw: 20 });
+  await eventually(async () => Math.hypot((await tip())[0] - 310, (await tip())[1] - 340) > 8, "another place");
+  await openParticipants(ada);
+  await ada.getByRole("switch", { name: "Show my pointer" }).click();
+  await other.locator(".pointer").waitFor({ state: "detached" });
+  await ada.keyboard.press("Escape");
+  await ada.mouse.move(330, 360, { steps: 3 });
+  await openParticipants(ada);
+  await ada.getByRole("switch", { name: "Show my pointer" }).click();
+  await ada.keyboard.press("Escape");
+  assert.equal(await other.locator(".pointer").count(), 0, "it is not shown");
+  await ada.mouse.move(310, 340, { steps: 3 });
+  await label.waitFor();
+  await ada.close();
+  await other.locator(".pointer").waitFor({ state: "detached" });
+});
+
+stage.test("a viewer follows the camera of one that looks around, until Escape", async () => {
+  await stage.server.call("camera.fit");
+  const { ada, other } = await adaAndAnother();
+  await openParticipants(ada);
+  await ada.getByRole("button", { name: "Look around on my own" }).click();
+  await ada.locator("#pill", { hasText: "Live, looking around" }).waitFor();
+  await openParticipants(other);
+  await other.locator(".participant", { hasText: "Ada" }).waitFor();
+  assert.deepEqual(await seriousFindings(other), []);
+  await other.getByRole("button", { name: "Follow Ada" }).click();
+  const following = other.locator("#following");
+  await following.getByText("Following Ada").waitFor();
+  await screenshot(other, "following");
+  assert.deepEqual(await seriousFindings(other), []);
+
+  /** Eyes of the cameras of both: first that of Ada, whose session is older. */
+  const eyes = async () => {
+    const { sessions } = await stage.server.call("session.list");
+    const own = sessions.filter(({ follows }) => follows === "main");
+    const number = ({ viewers }) => Number(viewers[0].viewer.slice(1));
+    own.sort((a, b) => number(a) - number(b));
+    const cameras = own.map(({ name }) => stage.server.call("camera.get", {}, name));
+    return (await Promise.all(cameras)).map(({ eye }) => eye);
+  };
+  const [begun] = await eyes();
+  await dragView(ada, { x: 300, y: 300 }, { x: 480, y: 320 });
+  await eventually(async () => {
+    const [first, second] = await eyes();
+    return distance(first, begun) > 0.05 && distance(first, second) < 1e-4;
+  }, "both cameras at the same place");
+  await other.locator("#view").focus();
+  await other.keyboard.press("Escape");
+  await following.waitFor({ state: "hidden" });
+  await dragView(ada, { x: 480, y: 320 }, { x: 300, y: 300 });
+  await eventually(async () => {
+    const [first, second] = await eyes();
+    return distance(first, second) > 0.05;
+  }, "cameras apart");
+
+  for (const end of [
+    () => following.getByRole("button", { name: "Stop" }).click(),
+    () => other.locator("#view").press("ArrowLeft"),
+    async () => {
+      await ada.close();
+      await other.getByText("Ada has left this view.").waitFor();
+    },
+  ]) {
+    await openParticipants(other);
+    await other.getByRole("button", { name: "Follow Ada" }).click();
+    await following.getByText("Following Ada").waitFor();
+    await end();
+    await following.waitFor({ state: "hidden" });
+  }
 });
 
 /** A swipe with one finger, as touch events. */

@@ -2,6 +2,7 @@ import assert from "node:assert/strict";
 import test from "node:test";
 import { duration, previewKind, progressText, summaryText, type Job } from "../src/jobs/job_texts.ts";
 import { type RenderWish, leftOut, renderJob } from "../src/output/render_request.ts";
+import type { CameraPose } from "../src/common/camera_pose.ts";
 import type { ViewState } from "../src/session/view_state.ts";
 
 const state: ViewState = {
@@ -18,6 +19,7 @@ const wish: RenderWish = {
   transparent: true,
   format: "png",
   turntable: null,
+  path: null,
   fps: 30,
 };
 
@@ -51,6 +53,26 @@ test("turntables are one video, or numbered images", () => {
   assert.equal(images?.output, "a_{frame:04}.png");
 });
 
+test("a path is rendered in place of the view", () => {
+  const [key, next] = [state.camera, { ...state.camera, eye: [4, 2, 3] }] as [CameraPose, CameraPose];
+  const form = { smooth: true, closed: false };
+  const path = { keys: [key, next], form, seconds: 4 };
+  const { entries, name } = renderJob(state, "a", { ...wish, path, format: "mp4" });
+  assert.equal(name, "a path, 640 x 360");
+  assert.equal(entries[0]?.view, undefined);
+  assert.deepEqual(entries[0]?.path?.keys[1]?.eye, [4, 2, 3]);
+  assert.deepEqual([entries[0]?.path?.seconds, entries[0]?.fps], [4, 30]);
+  const images = renderJob(state, "a", { ...wish, path }).entries[0];
+  assert.equal(images?.output, "a_{frame:04}.png");
+});
+
+test("a job has the edits of the view", () => {
+  const edits = { version: 1, hidden: [3], environment: { name: "sky" } };
+  const [entry] = renderJob(state, "a", wish, edits).entries;
+  assert.deepEqual(entry?.edits?.hidden, [3]);
+  assert.equal(entry?.edits?.environment, undefined);
+});
+
 test("another buffer has neither quality nor background", () => {
   const settings = { view: { buffer: "gbuffer.normals" } };
   const [entry] = renderJob({ ...state, settings }, "a", wish).entries;
@@ -60,8 +82,7 @@ test("another buffer has neither quality nor background", () => {
 
 test("what a job cannot show is said", () => {
   assert.equal(leftOut(state), "");
-  const sentence = leftOut({ ...state, lights: { sun: { intensity: 2 } }, part: 1 });
-  assert.match(sentence, /changed lights, the choice of a scene/);
+  assert.match(leftOut({ ...state, part: 1 }), /the choice of a scene/);
   assert.throws(() => renderJob({ ...state, scene: undefined }, "a", wish), /no scene/);
 });
 

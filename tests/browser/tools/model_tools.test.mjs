@@ -198,6 +198,43 @@ stage.test("an annotation is written, shared, and faint behind a surface", async
   await page.locator("#view").focus();
   await page.keyboard.press("Control+z");
   await eventually(async () => (await listed())[0]?.id === one.id, "it again");
+
+  // The saved file brings it back, once; what is wrong with another file is told.
+  const choose = (file) => page.locator("input[name=annotations_file]").setInputFiles(file);
+  const told = (text) => page.locator(".toast", { hasText: text }).waitFor();
+  await choose(saved.path);
+  await told("0 annotations added; 1 was there already");
+  await call("annotations.clear");
+  await choose(saved.path);
+  await told("annotations.json: 1 annotation added");
+  const [back] = await listed();
+  assert.deepEqual([back.text, back.author, back.surface], ["Dented here", one.author, one.surface]);
+  await page.locator("#view").focus();
+  await page.keyboard.press("Control+z");
+  await eventually(async () => (await listed()).length === 0, "the import undone");
+  const refused = { text: "Here", surface: { ...one.surface, triangle: 1e8 } };
+  const file = (name, content) => ({
+    name,
+    mimeType: "application/json",
+    buffer: Buffer.from(JSON.stringify(content)),
+  });
+  await choose(file("other.json", { scene: "elsewhere", annotations: [refused] }));
+  await told("the file was saved in the scene elsewhere");
+  await told("not added: 1 (");
+  await choose(file("wrong.json", { annotations: [{ ...refused, text: 3 }] }));
+  await told("wrong.json: annotation 1: text must be a text");
+
+  // Dropped on the page.
+  const transfer = await page.evaluateHandle((text) => {
+    const transferred = new DataTransfer();
+    transferred.items.add(new File([text], "dropped.json", { type: "application/json" }));
+    return transferred;
+  }, JSON.stringify({ annotations: [{ text: "Dropped", surface: one.surface }] }));
+  await page.dispatchEvent("body", "dragenter", { dataTransfer: transfer });
+  await page.getByText("Drop annotations (.json) to add them").waitFor();
+  await page.dispatchEvent("body", "drop", { dataTransfer: transfer });
+  await eventually(async () => (await listed())[0]?.text === "Dropped", "the dropped annotation");
+  await call("annotations.clear");
 });
 
 /** CSS pixels of a point in a view that shows all of the frame's height. */

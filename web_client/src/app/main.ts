@@ -6,11 +6,14 @@ import { createSaveDialog } from "../output/save_dialog.ts";
 import { createEmbedDialog } from "../output/embed_dialog.ts";
 import { createRenderDialog } from "../output/render_dialog.ts";
 import { reportToEmbeddingPage } from "../embed/embedding_page.ts";
+import { mountGizmos } from "../gizmos/gizmos.ts";
 import { mountFirstHint } from "../overlay/first_hint.ts";
+import { mountFollowing } from "../overlay/following.ts";
 import { createHelp } from "../overlay/help.ts";
 import { mountMarks } from "../overlay/marks.ts";
 import { mountMjpegFallback } from "../overlay/mjpeg_fallback.ts";
 import { mountParticipants } from "../overlay/participants.ts";
+import { mountPointers } from "../overlay/pointers.ts";
 import { mountRefining } from "../overlay/refining.ts";
 import { mountStatus } from "../overlay/status.ts";
 import { Toasts } from "../overlay/toasts.ts";
@@ -18,12 +21,14 @@ import { mountTransport } from "../overlay/transport.ts";
 import { mountUpload, uploadFile } from "../overlay/upload.ts";
 import { viewFrom } from "../panel/scene/view_buttons.ts";
 import { mountPanel } from "../panel/panel.ts";
+import { bookmarkPath, createPathOptions } from "../panel/scene/path_fields.ts";
 import { viewIn } from "../session/view_link.ts";
 import { Viewer } from "../session/viewer.ts";
-import { AutoRotate } from "../view/auto_rotate.ts";
+import { AutoRotate, type AutoRotateHost } from "../view/auto_rotate.ts";
 import { type ViewSide, fitBeside, focusOn } from "../view/camera.ts";
 import { createDivider } from "../view/divider.ts";
 import { Navigation } from "../view/navigation.ts";
+import { PathPlayer } from "../view/path_player.ts";
 import { createPicker } from "../view/picker.ts";
 import { PointTool } from "../view/point_tool.ts";
 import { frameSize, pointInFrame, watchSize } from "../view/viewport.ts";
@@ -72,10 +77,13 @@ function main(): void {
   });
   const points = new PointTool({
     canvas,
-    picker: createPicker(canvas, find("mark")), // before others, so that it takes the click first
+    // This picker and the next come before others, so that they take the click first.
+    picker: createPicker(canvas, find("mark")),
     snap: (x, y, free) => viewer.queries.snap(x, y, free),
   });
+  const focus = createPicker(canvas, find("mark"));
   mountMarks(find("marks"), viewer, points);
+  mountPointers(find("pointers"), canvas, viewer);
   const navigation = new Navigation(canvas, {
     camera: () => (viewer.hello && viewer.membership.mayMove ? viewer.camera.value : null),
     sceneSize: () => viewer.shown.size,
@@ -108,14 +116,17 @@ function main(): void {
   viewer.cameraMoves.animateTo = (camera, recorded) => navigation.goTo(camera, recorded);
   viewer.cameraMoves.isBusy = () => navigation.active;
 
-  const rotation = new AutoRotate({
+  const cameraHost: AutoRotateHost = {
     camera: () => (viewer.hello && viewer.membership.mayMove ? viewer.camera.value : null),
     moved: (camera) => viewer.cameraMoves.moveTo(camera, false),
     isBusy: () => navigation.active,
-  });
+  };
+  const rotation = new AutoRotate(cameraHost);
+  const path = createPathOptions();
   const divider = createDivider(find("compare"));
   mountMjpegFallback(viewer, find("mjpeg"));
   mountParticipants(viewer, find("participants"), (message) => toasts.inform(message));
+  mountFollowing(viewer, find("following"));
   const inform = (message: string): void => toasts.inform(message);
   const saveDialog = createSaveDialog(find<HTMLDialogElement>("save"), viewer, {
     fileStem: () => fileStem(viewer),
@@ -125,9 +136,11 @@ function main(): void {
   const renderDialog = createRenderDialog(find<HTMLDialogElement>("render"), viewer, {
     fileStem: () => fileStem(viewer),
     jobsPage,
+    path: () => bookmarkPath(viewer, path),
   });
   const embedDialog = createEmbedDialog(find<HTMLDialogElement>("embed"), viewer, inform);
   const help = createHelp(find<HTMLDialogElement>("help"));
+  const comparison = new Comparison(viewer, () => divider.newCanvas());
   const panel = mountPanel(find("panel"), viewer, {
     output: outputActions(viewer, {
       recordingButton: find("recording"),
@@ -138,16 +151,24 @@ function main(): void {
       inform,
     }),
     inspect: {
-      comparison: new Comparison(viewer, () => divider.newCanvas()),
+      comparison,
       divider,
       picker: createPicker(canvas, find("mark")),
       points,
     },
-    rotation,
+    camera: { rotation, player: new PathPlayer(cameraHost), path, focus },
     selection: createPicker(canvas, find("mark")),
     upload: (file) => void uploadFile(viewer, file, toasts),
     help: help.open,
     fullscreen: document.fullscreenEnabled ? toggleFullscreen : null,
+  });
+  mountGizmos(viewer, {
+    root: find("gizmos"),
+    lines: find("gizmo-lines"),
+    view: canvas,
+    covers: [find("panel"), find("transport"), find("top-left")],
+    points,
+    comparison: comparison.state,
   });
   mountTransport(viewer, find("transport"));
   mountStatus(viewer, find("pill"), find("notice"));
@@ -204,7 +225,9 @@ function main(): void {
     else if (event.key === "m" || event.key === "M") panel.toggleMeasuring();
     else if (event.key === "n" || event.key === "N") panel.toggleAnnotating();
     else if (points.task.value && event.key === "Escape") points.cancel();
-    else if (points.task.value && event.key.toLowerCase() === "p") {
+    else if (event.key === "Escape" && viewer.membership.following.value) {
+      if (!event.defaultPrevented) viewer.membership.stopFollowing();
+    } else if (points.task.value && event.key.toLowerCase() === "p") {
       void points.place(0.5, 0.5, false);
     } else if (event.key === " " && (focused === canvas || focused === document.body)) {
       viewer.togglePlay();

@@ -1,6 +1,7 @@
 // The dialog that has the server render the view into files, as a job.
 
 import { type Viewer } from "../session/viewer.ts";
+import type { Path } from "../view/path_player.ts";
 import { button, element, setOptions, setText } from "../widgets/element.ts";
 import { field } from "../widgets/field.ts";
 import { type RenderWish, leftOut, renderJob, videoFormats } from "./render_request.ts";
@@ -11,7 +12,7 @@ const imageFormats = [
   { value: "jpeg", label: "JPEG, smaller" },
   { value: "webp", label: "WebP" },
 ];
-const turntableFormats = [
+const videoAndFrameFormats = [
   { value: "mp4", label: "Video, MP4" },
   { value: "webm", label: "Video, WebM" },
   { value: "animated_webp", label: "Animated WebP" },
@@ -29,6 +30,8 @@ const turns = [
   { value: "72", label: "Turntable, 72 frames" },
   { value: "144", label: "Turntable, 144 frames" },
 ];
+const pathChoice = "path";
+const pathOption = { value: pathChoice, label: "Path through the bookmarks" };
 const keepAlpha: ReadonlySet<string> = new Set(["png", "webp", "animated_webp"]);
 
 interface RenderHost {
@@ -36,6 +39,8 @@ interface RenderHost {
   fileStem(): string;
   /** The page of jobs. */
   jobsPage(): string;
+  /** Through the bookmarks; null without. */
+  path(): Path | null;
 }
 
 export function createRenderDialog(
@@ -85,17 +90,16 @@ export function createRenderDialog(
     ),
     form,
   );
-  setOptions(turn, turns);
   setOptions(quality, qualities);
   setOptions(
     rate,
     ["12", "24", "30", "60"].map((value) => ({ value, label: value })),
   );
-  [turn.value, quality.value, rate.value] = ["", "0.98", "30"];
+  [quality.value, rate.value] = ["0.98", "30"];
 
   let offered: typeof imageFormats | null = null;
   const update = (): void => {
-    const formats = turn.value === "" ? imageFormats : turntableFormats;
+    const formats = turn.value === "" ? imageFormats : videoAndFrameFormats;
     if (formats !== offered) {
       offered = formats;
       setOptions(format, formats);
@@ -112,7 +116,8 @@ export function createRenderDialog(
     quality: quality.value === "" ? null : Number(quality.value),
     transparent: transparent.checked && !background.hidden,
     format: format.value as RenderWish["format"],
-    turntable: turn.value === "" ? null : Number(turn.value),
+    turntable: turn.value === "" || turn.value === pathChoice ? null : Number(turn.value),
+    path: turn.value === pathChoice ? host.path() : null,
     fps: Number(rate.value),
   });
 
@@ -120,7 +125,9 @@ export function createRenderDialog(
     render.disabled = true;
     setText(status, "");
     try {
-      const request = renderJob(viewer.viewState(), host.fileStem(), wish());
+      const known = viewer.capabilities.has("edits.get");
+      const edits = known ? await viewer.parts.readEdits() : null;
+      const request = renderJob(viewer.viewState(), host.fileStem(), wish(), edits);
       const job = await viewer.rpc.request("job.create", request);
       status.replaceChildren(
         `“${job.name}” was queued. `,
@@ -146,6 +153,9 @@ export function createRenderDialog(
   return {
     open() {
       if (dialog.open) return;
+      const chosen = turn.value;
+      setOptions(turn, host.path() ? [...turns, pathOption] : turns);
+      turn.value = turns.some(({ value }) => value === chosen) ? chosen : "";
       const limits = viewer.hello?.limits;
       const { width, height } = viewer.stream.settings.value ?? { width: 1280, height: 720 };
       size.show(

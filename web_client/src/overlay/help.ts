@@ -12,6 +12,7 @@ const entries: [title: string, rows: [keys: string[], meaning: string][]][] = [
       [["Double click"], "Focus on the point under the pointer"],
       [["Click"], "Select an object, while Objects is unfolded (Shift: add)"],
       [["Click"], "Place a point, while measuring (Alt: nothing attracts it)"],
+      [["Drag"], "On a handle: move or turn a light or section plane (Shift: finer; Esc: back)"],
     ],
   ],
   [
@@ -20,12 +21,14 @@ const entries: [title: string, rows: [keys: string[], meaning: string][]][] = [
       [["One finger"], "Orbit"],
       [["Two fingers"], "Pan, pinch to zoom"],
       [["Double tap"], "Focus on the point under the finger"],
+      [["One finger"], "On a handle: move or turn a light or section plane"],
     ],
   ],
   [
     "Keys",
     [
       [["←", "→", "↑", "↓"], "Orbit (with Shift: pan)"],
+      [["←", "→", "↑", "↓"], "On a handle: move or turn by steps (with Shift: larger)"],
       [["+", "−"], "Zoom in, zoom out"],
       [["W", "A", "S", "D"], "Fly (Q, E: down, up; Shift: faster; drag: look around)"],
       [["Space"], "Play or pause"],
@@ -36,6 +39,7 @@ const entries: [title: string, rows: [keys: string[], meaning: string][]][] = [
       [["Ctrl Z"], "Undo the last change (Ctrl Shift Z: redo)"],
       [["V"], "Hide or show an object (in the list of objects; Enter: select)"],
       [["M"], "Measure a distance (P: point in the middle of the view; Esc: end)"],
+      [["Esc"], "Stop following another viewer"],
       [["N"], "Annotate a surface (P: in the middle of the view; Ctrl Enter: add)"],
       [["H"], "Hide or show the panel"],
       [["Enter"], "Fullscreen (while the view has the focus)"],

@@ -3,10 +3,13 @@
 import type { SessionInfo, ViewerInfo } from "heliograph/messages.ts";
 import { copyText } from "../common/clipboard.ts";
 import { participantName, setParticipantName } from "../common/preferences.ts";
+import type { Companion } from "../session/company/company.ts";
 import { viewerName } from "../session/control_state.ts";
 import type { Viewer } from "../session/viewer.ts";
 import { button, element, icon, setText } from "../widgets/element.ts";
+import { field } from "../widgets/field.ts";
 import { createTakeControlButton } from "../widgets/take_control_button.ts";
+import { colourOfViewer, nameOfViewer } from "./viewer_identity.ts";
 
 export function mountParticipants(
   viewer: Viewer,
@@ -32,6 +35,7 @@ export function mountParticipants(
   const change = element("button", { type: "button", class: "button quiet" });
   const camera = element("button", { type: "button", class: "button quiet" });
   const explanation = element("p", { class: "facts" });
+  const pointer = pointerField(viewer);
   const invite = element(
     "button",
     {
@@ -53,6 +57,7 @@ export function mountParticipants(
     explanation,
     list,
     own,
+    pointer,
     invite,
     camera,
     mode,
@@ -75,12 +80,14 @@ export function mountParticipants(
   const open = (shown: boolean): void => {
     card.hidden = !shown;
     opener.setAttribute("aria-expanded", String(shown));
+    if (shown) void viewer.company.read();
   };
   addEventListener("pointerdown", (event) => {
     if (!root.contains(event.target as Node)) open(false);
   });
   root.addEventListener("keydown", (event) => {
     if (event.key !== "Escape" || card.hidden) return;
+    event.preventDefault();
     open(false);
     opener.focus();
   });
@@ -112,8 +119,10 @@ export function mountParticipants(
     const session = viewer.membership.session.value;
     if (!session) return;
     const me = session.viewers.find(({ you }) => you);
-    setText(count, String(session.viewers.length));
-    opener.setAttribute("aria-label", `Participants: ${session.viewers.length}`);
+    const elsewhere = viewer.company.elsewhere.value;
+    const all = session.viewers.length + elsewhere.length;
+    setText(count, String(all));
+    opener.setAttribute("aria-label", `Participants: ${all}`);
     const isOwn = viewer.own.shared.value !== null;
     const others = session.viewers.length - 1;
     const { looksAround } = viewer.membership;
@@ -124,7 +133,9 @@ export function mountParticipants(
         ? "Only you see this camera. Everything else follows the shared session."
         : describeSession(isOwn, others),
     );
-    invite.hidden = own.hidden = list.hidden = looksAround;
+    invite.hidden = own.hidden = looksAround;
+    list.hidden = looksAround && elsewhere.length === 0;
+    pointer.hidden = !viewer.capabilities.has("pointer.set");
     setText(camera, looksAround ? "Follow again" : "Look around on my own");
     const alone = isOwn && others === 0;
     camera.hidden = !looksAround && (alone || !viewer.capabilities.has("session.detach"));
@@ -139,6 +150,7 @@ export function mountParticipants(
       ...(exclusive && !claimed && viewer.membership.controlState.value.kind !== "read_only"
         ? [takeLine()]
         : []),
+      ...elsewhere.map(companionLine),
     );
   };
   /** What each viewer did last, by its id. */
@@ -156,6 +168,7 @@ export function mountParticipants(
     return element(
       "li",
       { "data-viewer": participant.viewer },
+      colourDot(participant.viewer),
       element(
         "span",
         { class: "participant" },
@@ -172,9 +185,38 @@ export function mountParticipants(
         : null,
     );
   };
+  /** A viewer with another camera, which can be followed. */
+  const companionLine = ({ viewer: id, looksAround }: Companion): HTMLElement => {
+    const { membership, capabilities } = viewer;
+    const name = nameOfViewer(viewer, id);
+    const isFollowed = membership.following.value?.viewer === id;
+    const canFollow =
+      looksAround && capabilities.has("viewer.follow") && capabilities.has("session.detach");
+    const toggle = (): void => {
+      open(false);
+      opener.focus();
+      if (isFollowed) membership.stopFollowing();
+      else void membership.follow({ viewer: id, name });
+    };
+    const label = isFollowed ? `Stop following ${name}` : `Follow ${name}`;
+    return element(
+      "li",
+      { "data-viewer": id },
+      colourDot(id),
+      element(
+        "span",
+        { class: "participant" },
+        name,
+        element("span", { class: "deed" }, looksAround ? "looks around" : ""),
+      ),
+      canFollow ? button(label, isFollowed ? "close" : "eye", toggle) : null,
+    );
+  };
   const takeLine = (): HTMLElement => element("li", {}, createTakeControlButton(viewer));
   viewer.membership.session.watch(update);
   viewer.own.shared.watch(update);
+  viewer.company.elsewhere.watch(update);
+  viewer.membership.following.watch(update);
   viewer.capabilities.methods.watch(update);
   viewer.activity.watch((activity) => {
     if (!activity) return;
@@ -182,6 +224,25 @@ export function mountParticipants(
     const shown = list.querySelector(`[data-viewer="${activity.viewer}"] .deed`);
     if (shown) setText(shown, activity.deed);
   });
+}
+
+/** Whether others see this page's pointer. */
+function pointerField({ company: { pointers } }: Viewer): HTMLElement {
+  const box = element("input", {
+    type: "checkbox",
+    role: "switch",
+    class: "switch",
+    name: "pointer",
+    change: () => pointers.share(box.checked),
+  });
+  pointers.shared.watch((shared) => (box.checked = shared));
+  return field("Show my pointer", box);
+}
+
+function colourDot(viewer: string): HTMLElement {
+  const dot = element("span", { class: "viewer-colour", "aria-hidden": "true" });
+  dot.style.background = colourOfViewer(viewer);
+  return dot;
 }
 
 function nameOfSession({ name, follows }: SessionInfo, isOwn: boolean): string {

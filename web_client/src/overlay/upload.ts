@@ -1,12 +1,16 @@
-// Uploads a scene or an environment that was dropped on the page or chosen, and shows it.
+// Uploads a scene or an environment that was dropped on the page or chosen, and shows it. Annotations
+// that are dropped are added to the scene.
 
 import { type FileError, describeFileError } from "../session/file_errors.ts";
 import { describeControl } from "../session/control_state.ts";
 import type { Viewer } from "../session/viewer.ts";
 import { element, setText } from "../widgets/element.ts";
+import { importAnnotations } from "./annotation_import.ts";
 import type { Toasts } from "./toasts.ts";
 
 const uploadsDisabled = "This server does not accept uploads.";
+const uploadText = "Drop a scene (.glb) or an environment (.hdr, .exr) to show it";
+const importText = "Drop annotations (.json) to add them";
 const megabyte = 1024 * 1024;
 
 export function mountUpload(viewer: Viewer, root: HTMLElement, toasts: Toasts): void {
@@ -17,7 +21,7 @@ export function mountUpload(viewer: Viewer, root: HTMLElement, toasts: Toasts): 
     event.dataTransfer?.types.includes("Files") ?? false;
   addEventListener("dragenter", (event) => {
     if (!carriesFile(event) || !viewer.hello) return;
-    setText(text, uploadError(viewer) ?? "Drop a scene (.glb) or an environment (.hdr, .exr) to show it");
+    setText(text, isJson(event) ? importText : (uploadError(viewer) ?? uploadText));
     veil.hidden = false;
   });
   addEventListener("dragover", (event) => {
@@ -31,8 +35,15 @@ export function mountUpload(viewer: Viewer, root: HTMLElement, toasts: Toasts): 
     event.preventDefault();
     veil.hidden = true;
     const file = event.dataTransfer?.files[0];
-    if (file) void uploadFile(viewer, file, toasts);
+    if (!file) return;
+    if (/\.json$/i.test(file.name)) void importAnnotations(viewer, file);
+    else void uploadFile(viewer, file, toasts);
   });
+}
+
+/** Whether the browser tells so: of a file that is still dragged it does not know the name. */
+function isJson({ dataTransfer }: DragEvent): boolean {
+  return [...(dataTransfer?.items ?? [])].some(({ type }) => type === "application/json");
 }
 
 /** Uploads a file and shows it; tells why if it cannot. */

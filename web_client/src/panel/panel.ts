@@ -4,13 +4,13 @@ import { preferences } from "../common/preferences.ts";
 import type { Signal } from "../common/signal.ts";
 
 import { type Viewer, bufferSetting } from "../session/viewer.ts";
-import type { AutoRotate } from "../view/auto_rotate.ts";
 import type { PointPicker } from "../view/picker.ts";
 import { button, element, icon } from "../widgets/element.ts";
 import { type MenuItem, createMenu } from "../widgets/menu.ts";
 import { createTabs } from "../widgets/tabs.ts";
 import { createControlNote } from "./control_note.ts";
 import { type InspectParts, createInspectTab } from "./inspect/inspect_tab.ts";
+import type { CameraTools } from "./scene/camera_fields.ts";
 import { createSceneTab, appearanceGroups } from "./scene/scene_tab.ts";
 import { createSettingsTab } from "./settings/settings_tab.ts";
 import { type ResolutionChoice, createStreamSection } from "./timing/stream_section.ts";
@@ -22,7 +22,7 @@ interface PanelActions {
   inspect: InspectParts;
   /** Clicks that select objects. */
   selection: PointPicker;
-  rotation: AutoRotate;
+  camera: CameraTools;
   /** Uploads a scene file and loads it. */
   upload(file: File): void;
   help(): void;
@@ -50,7 +50,7 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
       id: "scene",
       label: "Scene",
       icon: "scene",
-      body: createSceneTab(viewer, actions.selection, actions.rotation, actions.upload),
+      body: createSceneTab(viewer, actions.selection, actions.camera, actions.upload),
     },
     {
       id: "settings",

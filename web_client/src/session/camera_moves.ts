@@ -16,6 +16,8 @@ interface CameraMovesHost {
   history: UndoHistory;
   /** Whether movements are steps of the history: not those of a camera of one's own. */
   records(): boolean;
+  /** A camera of one's own that was another viewer's is so no longer. */
+  begins(): void;
   /** The user has moved the camera; `seq` numbers the message to the server. */
   moved(camera: CameraPose, seq: number): void;
   attempt(action: () => Promise<unknown>): Promise<void>;
@@ -42,6 +44,7 @@ export class CameraMoves {
 
   /** Sends an absolute pose of a movement. Call at most once per animation frame. */
   moveTo(camera: CameraPose, recorded = true, movement?: number): void {
+    this.host.begins();
     if (recorded) this.remember(camera, movement);
     this.host.camera.set(camera);
     const seq = this.nextInput();
@@ -53,6 +56,7 @@ export class CameraMoves {
   /** Selects a camera of the scene. */
   async select(name: string, recorded = true): Promise<void> {
     await this.host.attempt(async () => {
+      this.host.begins();
       const camera = await this.host.rpc.request("camera.set", { name, seq: this.nextInput() });
       this.arrive(camera, recorded);
     });
@@ -61,6 +65,7 @@ export class CameraMoves {
   /** Fits the scene, or these nodes of it, into the view; `place` adapts the pose to what covers the view. */
   async fit(nodes?: number[], recorded = true): Promise<void> {
     await this.host.attempt(async () => {
+      this.host.begins();
       const camera = await this.host.rpc.request("camera.fit", nodes ? { nodes } : {});
       const placed = this.place(camera);
       if (recorded) this.remember(placed);

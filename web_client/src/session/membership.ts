@@ -5,6 +5,12 @@ import { ChannelClosed, type RpcPeer } from "heliograph/rpc.ts";
 import { Signal } from "../common/signal.ts";
 import { type ControlState, controlStateOf } from "./control_state.ts";
 
+/** A viewer whose camera this page has. */
+interface Followed {
+  viewer: string;
+  name: string;
+}
+
 interface MembershipHost {
   rpc: RpcPeer;
   /** Tells this page's id and what its token allows; null without a connection. */
@@ -21,6 +27,8 @@ export class Membership {
   readonly session = new Signal<SessionInfo | null>(null);
   /** Whether this page may change the session. */
   readonly controlState = new Signal<ControlState>({ kind: "may_change" });
+  /** The viewer whose camera this page's own is; null: no one's. */
+  readonly following = new Signal<Followed | null>(null);
   private readonly host: MembershipHost;
 
   constructor(host: MembershipHost) {
@@ -71,6 +79,7 @@ export class Membership {
     const viewers = session.viewers.map((one) => ({ ...one, you: one.viewer === own?.viewer }));
     this.session.set({ ...session, viewers });
     this.controlState.set(controlStateOf(this.session.value, own?.role));
+    if (!this.looksAround) this.unfollowed();
     this.host.changed(session);
   }
 
@@ -97,5 +106,26 @@ export class Membership {
       this.take((await this.host.rpc.request("session.join", { session: shared })).info);
       await this.host.moved();
     });
+  }
+
+  /** Takes over the camera of another viewer wherever it goes, with a camera of one's own. */
+  async follow(followed: Followed): Promise<void> {
+    if (!this.looksAround) await this.lookAround();
+    if (!this.looksAround) return;
+    await this.host.attempt(async () => {
+      await this.host.rpc.request("viewer.follow", { viewer: followed.viewer });
+      this.following.set(followed);
+    });
+  }
+
+  /** The camera stays where it is. */
+  stopFollowing(): void {
+    if (this.following.value) this.host.rpc.notify("viewer.follow", {});
+    this.unfollowed();
+  }
+
+  /** The server follows no longer: this page has moved its camera, or the other viewer has left. */
+  unfollowed(): void {
+    if (this.following.value) this.following.set(null);
   }
 }

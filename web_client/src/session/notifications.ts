@@ -4,6 +4,7 @@ import type { FrameStats, Notifications, SessionInfo } from "heliograph/messages
 import type { CameraPose } from "../common/camera_pose.ts";
 import type { Signal } from "../common/signal.ts";
 import type { Bookmarks } from "./bookmarks.ts";
+import type { Company } from "./company/company.ts";
 import type { Marks } from "./marks/marks.ts";
 import type { NodeStore } from "./node_store.ts";
 import type { SceneLoading } from "./scene_loading.ts";
@@ -24,10 +25,13 @@ interface Targets {
   history: UndoHistory;
   bookmarks: Bookmarks;
   marks: Marks;
+  company: Company;
   stats: Signal<FrameStats | null>;
   viewRestore: ViewRestore;
   takeCamera(camera: CameraPose): void;
   setSession(session: SessionInfo): void;
+  /** The viewer that this page followed has gone elsewhere. */
+  leftBehind(): void;
 }
 
 export function receiveNotification(targets: Targets, method: string, params: unknown): void {
@@ -56,6 +60,12 @@ export function receiveNotification(targets: Targets, method: string, params: un
       break;
     case "session.changed":
       targets.setSession(params as Notifications["session.changed"]);
+      break;
+    case "pointer.changed":
+      targets.company.pointers.take(params as Notifications["pointer.changed"]);
+      break;
+    case "viewer.unfollowed":
+      targets.leftBehind();
       break;
     case "lights.changed":
     case "materials.changed":

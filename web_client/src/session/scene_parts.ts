@@ -1,6 +1,6 @@
 // The parts of the scene that can be changed: lights, materials, environment.
 
-import type { JsonObject } from "heliograph/json.ts";
+import type { JsonObject, JsonValue } from "heliograph/json.ts";
 import type {
   EditDocument,
   EnvironmentState,
@@ -57,6 +57,24 @@ export class SceneParts {
     this.remember(name, patch, this.lights, this.lightSender);
     this.lights.set(merged(this.lights.value, name, patch));
     this.lightSender.push(name, patch as unknown as JsonObject);
+  }
+
+  /** Changes a light without a step of the history, as long as a drag lasts. */
+  previewLight(name: string, patch: Partial<LightInfo>): void {
+    this.lights.set(merged(this.lights.value, name, patch));
+    this.lightSender.push(name, patch as unknown as JsonObject);
+  }
+
+  /** A step of the history for what was previewed since the light was `before`. */
+  recordLight(before: LightInfo, patch: Partial<LightInfo>, label: string, key: string): void {
+    this.record(before, patch, { label, key }, this.lights, this.lightSender);
+  }
+
+  /** Takes back what was previewed of these members since the light was `before`. */
+  restoreLight(before: LightInfo, members: (keyof LightInfo)[]): void {
+    const { values, sent } = valuesBefore(before, members);
+    this.lights.set(merged(this.lights.value, before.name, values as Partial<LightInfo>));
+    this.lightSender.push(before.name, sent);
   }
 
   patchMaterial(name: string, patch: Partial<MaterialInfo>): void {
@@ -196,19 +214,22 @@ export class SceneParts {
     const part = parts.value.find((one) => one.name === name);
     const members = Object.keys(patch);
     if (!part || members.length === 0) return;
-    const shown = part as unknown as JsonObject;
-    const values = Object.fromEntries(members.map((member) => [member, shown[member] ?? null]));
-    // What did not differ from the file is reset, so that it is not marked as changed.
-    const sent = Object.fromEntries(
-      members.map((member) => [
-        member,
-        part.changed?.includes(member) === false ? null : (shown[member] ?? null),
-      ]),
-    );
+    const label =
+      members.length === 1 ? `${humanise(members[0] as string).toLowerCase()} of ${name}` : name;
+    this.record(part, patch, { label, key: `${name} ${members.join()}` }, parts, sender);
+  }
+
+  private record<Item extends Part>(
+    before: Item,
+    patch: Partial<Item>,
+    step: { label: string; key: string },
+    parts: Signal<Item[]>,
+    sender: PatchSender,
+  ): void {
+    const { name } = before;
+    const { values, sent } = valuesBefore(before, Object.keys(patch));
     this.host.history.add({
-      label:
-        members.length === 1 ? `${humanise(members[0] as string).toLowerCase()} of ${name}` : name,
-      key: `${name} ${members.join()}`,
+      ...step,
       ofScene: true,
       undo: () => {
         parts.set(merged(parts.value, name, values as Partial<Item>));
@@ -300,6 +321,22 @@ type MaterialChange = { material: Notifications["materials.changed"]["material"]
 
 function merged<Item extends Part>(parts: Item[], name: string, patch: Partial<Item>): Item[] {
   return parts.map((part) => (part.name === name ? { ...part, ...patch } : part));
+}
+
+/** Members of a part as they are, to show and to send. */
+function valuesBefore(
+  part: Part,
+  members: readonly string[],
+): { values: JsonObject; sent: JsonObject } {
+  const shown = part as unknown as JsonObject;
+  const pick = (value: (member: string) => JsonValue): JsonObject =>
+    Object.fromEntries(members.map((member) => [member, value(member)]));
+  const values = pick((member) => shown[member] ?? null);
+  // What did not differ from the file is reset, so that it is not marked as changed.
+  const sent = pick((member) =>
+    part.changed?.includes(member) === false ? null : (shown[member] ?? null),
+  );
+  return { values, sent };
 }
 
 /** A patch of nulls for the changed members; without `changed`, for the members shown here. */

@@ -54,6 +54,16 @@ export class SectionStore {
     this.change(planes, label, `${label} ${index}`);
   }
 
+  /** Changes the planes without a step of the history, as long as a drag lasts. */
+  preview(planes: readonly SectionPlane[]): void {
+    this.show(planes);
+  }
+
+  /** A step of the history for what was previewed since the planes were `before`. */
+  record(before: readonly SectionPlane[], label: string, key: string): void {
+    this.remember(before, this.planes.value, label, key);
+  }
+
   /** The other half is cut away. */
   flip(index: number): void {
     const plane = this.planes.value[index];
@@ -84,15 +94,23 @@ export class SectionStore {
   }
 
   private change(planes: readonly SectionPlane[], label: string, key = label): void {
-    const before = this.planes.value;
+    this.remember(this.planes.value, planes, label, key);
+    this.show(planes);
+  }
+
+  private remember(
+    before: readonly SectionPlane[],
+    after: readonly SectionPlane[],
+    label: string,
+    key: string,
+  ): void {
     this.host.history.add({
       label,
       key,
       ofScene: true,
       undo: () => this.show(before),
-      redo: () => this.show(planes),
+      redo: () => this.show(after),
     });
-    this.show(planes);
   }
 
   private show(planes: readonly SectionPlane[]): void {

@@ -13,8 +13,10 @@ import { type DrawnFrame, clockMs } from "../stream/worker_messages.ts";
 import { type Activity, activityOf } from "./activity.ts";
 import { Bookmarks } from "./bookmarks.ts";
 import { CameraMoves } from "./camera_moves.ts";
+import { Company } from "./company/company.ts";
 import type { FileError } from "./file_errors.ts";
 import { FrameQueries } from "./frame_queries.ts";
+import { HandleChoice } from "./handle_choice.ts";
 import { Marks } from "./marks/marks.ts";
 import { Membership } from "./membership.ts";
 import { NodeStore } from "./node_store.ts";
@@ -44,6 +46,7 @@ export class Viewer {
   readonly parts: SceneParts;
   readonly nodes: NodeStore;
   readonly section: SectionStore;
+  readonly handles: HandleChoice;
   readonly stream: StreamRequests;
   readonly queries: FrameQueries;
   readonly bookmarks: Bookmarks;
@@ -53,6 +56,7 @@ export class Viewer {
   readonly loading: SceneLoading;
   readonly cameraMoves: CameraMoves;
   readonly membership: Membership;
+  readonly company: Company;
   readonly restoring: Signal<boolean>;
   readonly shown = new ShownScene({
     rpc: () => this.rpc,
@@ -145,6 +149,7 @@ export class Viewer {
       rpc: this.rpc,
       camera: this.camera,
       records: () => this.mayChange,
+      begins: () => this.membership.unfollowed(),
       scene: this.scene,
       latency: this.meters.latency,
       history: this.history,
@@ -172,6 +177,7 @@ export class Viewer {
     });
     this.nodes = new NodeStore(this);
     this.section = new SectionStore(this);
+    this.handles = new HandleChoice(this);
     const marks = {
       rpc: this.rpc,
       capabilities: this.capabilities,
@@ -190,6 +196,7 @@ export class Viewer {
       inFrame: (x, y) => this.inFrame(x, y),
       report: (error) => this.report(error),
     });
+    this.company = new Company(this);
     this.sessionRestore = new SessionRestore({
       origin: () => this.connection.origin,
       mayChange: () => this.mayChange,
@@ -227,6 +234,8 @@ export class Viewer {
     this.connection.state.watch(({ kind }) => {
       if (kind === "live") return;
       this.receivedHello = null;
+      this.membership.unfollowed();
+      this.company.pointers.forget(true);
       this.loading.reset();
       this.capabilities.reset();
       this.stream.end();
@@ -336,9 +345,17 @@ export class Viewer {
     this.membership.take(session);
   }
 
+  leftBehind(): void {
+    const { following } = this.membership;
+    const name = following.value?.name;
+    this.membership.unfollowed();
+    if (name) this.onInfo(`${name} has left this view. You look around on your own.`);
+  }
+
   /** The session that the page is in now has another camera, and counts its own revisions. */
   private async sessionMoved(): Promise<void> {
     this.connection.predict(null);
+    this.company.pointers.forget(false);
     this.shown.restart();
     this.loading.reset();
     this.capabilities.reset();

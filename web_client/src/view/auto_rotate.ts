@@ -8,7 +8,7 @@ const turnsPerMs = (2 * Math.PI) / 30_000;
 /** After a pause, as of a hidden page, the camera goes on where it was. */
 const longestStepMs = 100;
 
-interface AutoRotateHost {
+export interface AutoRotateHost {
   /** Null where this page may not move the camera now. */
   camera(): CameraPose | null;
   moved(camera: CameraPose): void;

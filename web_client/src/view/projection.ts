@@ -53,6 +53,30 @@ export class Projection {
     return [this.place(cut(a, b)), this.place(cut(b, a))];
   }
 
+  /** Unit vectors of the world across the view, and away from the eye. */
+  get directions(): { rightward: Vector3; upward: Vector3; forward: Vector3 } {
+    const [rightward, upward, forward] = this.axes;
+    return { rightward, upward, forward };
+  }
+
+  /** CSS pixels of a metre across the view at a point; 0 behind the eye. */
+  pixelsPerMetre(position: Vector3): number {
+    const depth = this.seen(position)[2];
+    return depth > this.nearest ? this.scale / depth : 0;
+  }
+
+  /** How a point moves over the view along a unit vector, CSS pixels per metre; null behind the eye. */
+  motion(position: Vector3, along: Vector3): ViewPoint | null {
+    const [right, up, forward] = this.seen(position);
+    if (forward <= this.nearest) return null;
+    const [rightRate, upRate, forwardRate] = this.axes.map((axis) => dot(axis, along)) as Vector3;
+    const scale = this.scale / forward;
+    return {
+      x: scale * (rightRate - (right * forwardRate) / forward),
+      y: -scale * (upRate - (up * forwardRate) / forward),
+    };
+  }
+
   /** In the camera's axes: right, up, forward. */
   private seen(position: Vector3): Vector3 {
     const offset = subtract(position, this.eye);

@@ -15,6 +15,14 @@ interface SectionParts {
   action?: HTMLElement;
 }
 
+/** Reports whether a section's body can be seen: unfolded, in the tab and the panel that are shown. */
+export function watchUnfolded(section: HTMLElement, report: (unfolded: boolean) => void): void {
+  const fold = section.querySelector("details");
+  const update = (): void => report(fold?.open === true && section.getClientRects().length > 0);
+  fold?.addEventListener("toggle", update);
+  new ResizeObserver(update).observe(section);
+}
+
 export function createSection(parts: SectionParts): HTMLElement {
   const key = `open.${parts.id}`;
   const fold = element(

@@ -4,6 +4,8 @@ import type { Annotation, Snap } from "heliograph/messages.ts";
 import { saveFile } from "../../common/image_files.ts";
 import { participantName } from "../../common/preferences.ts";
 import type { Viewer } from "../../session/viewer.ts";
+import { writeAnnotations } from "../../session/marks/annotation_file.ts";
+import { importAnnotations } from "../../overlay/annotation_import.ts";
 import type { PointTool } from "../../view/point_tool.ts";
 import { button, element, setText } from "../../widgets/element.ts";
 
@@ -31,16 +33,34 @@ export function createAnnotateSection(viewer: Viewer, tool: PointTool): Annotate
   const hint = element("p", { class: "facts", role: "status" });
   const list = element("ul", { class: "annotations", "aria-label": "Annotations" });
   const clear = textButton("Remove all", () => void annotations.clear());
+  const input = element("input", {
+    type: "file",
+    accept: ".json,application/json",
+    hidden: true,
+    name: "annotations_file",
+    change: () => {
+      const file = input.files?.[0];
+      if (file) void importAnnotations(viewer, file);
+      input.value = "";
+    },
+  });
+  const add = textButton("Import", () => input.click());
+  add.dataset.tip = "Adds the annotations of a file that was saved as JSON; it can be dropped, too";
   const controls = element(
     "fieldset",
     { class: "requires-control" },
     begin,
+    add,
+    input,
     hint,
     form.node,
     list,
     clear,
   );
-  const keep = textButton("Save as JSON", () => saveFile(documentOf(viewer), "annotations.json"));
+  const keep = textButton("Save as JSON", () => {
+    const scene = viewer.scene.value?.name ?? null;
+    saveFile(writeAnnotations(scene, annotations.list.value), "annotations.json");
+  });
   const node = element(
     "div",
     { class: "fields annotate", "data-section": "annotate" },
@@ -159,11 +179,4 @@ function createEntry(viewer: Viewer, annotation: Annotation, reset: () => void):
     edit,
     remove,
   );
-}
-
-/** The file that "Save as JSON" writes. */
-function documentOf({ marks, scene }: Viewer): Blob {
-  const annotations = marks.annotations.list.value;
-  const text = JSON.stringify({ scene: scene.value?.name ?? null, annotations }, null, 2);
-  return new Blob([`${text}\n`], { type: "application/json" });
 }

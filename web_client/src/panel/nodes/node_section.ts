@@ -5,6 +5,7 @@ import type { Viewer } from "../../session/viewer.ts";
 import type { PointPicker } from "../../view/picker.ts";
 import { button, element, setText } from "../../widgets/element.ts";
 import { createSection } from "../../widgets/section.ts";
+import { createExplodeRow } from "./explode_row.ts";
 import { createNodeTree } from "./node_tree.ts";
 
 const maxListedMaterials = 4;
@@ -25,6 +26,7 @@ export function createNodeSection(viewer: Viewer, picker: PointPicker): HTMLElem
     search,
     tree.node,
     createSelectionView(viewer),
+    createExplodeRow(viewer),
   );
   const section = createSection({
     id: "objects",

@@ -6,7 +6,7 @@ import { humanise } from "heliograph/settings_schema.ts";
 import type { Viewer } from "../../session/viewer.ts";
 import { button, element, setOptions } from "../../widgets/element.ts";
 import { field } from "../../widgets/field.ts";
-import { createSection } from "../../widgets/section.ts";
+import { createSection, watchUnfolded } from "../../widgets/section.ts";
 import { createLightRows } from "./light_rows.ts";
 import { createSunDial } from "./sun_dial.ts";
 
@@ -14,7 +14,13 @@ const types: LightInfo["type"][] = ["point", "spot", "directional", "rectangle",
 
 export function createLightSection(viewer: Viewer): HTMLElement {
   const { parts } = viewer;
-  const select = element("select", { name: "light", change: () => show() });
+  const select = element("select", {
+    name: "light",
+    change: () => {
+      viewer.handles.choose({ kind: "light", name: select.value });
+      show();
+    },
+  });
   const selected = (): LightInfo | undefined =>
     parts.lights.value.find(({ name }) => name === select.value) ?? parts.lights.value[0];
   const patch = (change: LightPatch): void => {
@@ -37,6 +43,19 @@ export function createLightSection(viewer: Viewer): HTMLElement {
     const light = selected();
     if (light) void parts.removeLight(light.name);
   });
+  const handles = element(
+    "button",
+    {
+      type: "button",
+      class: "button quiet",
+      "data-tip": "Handles over the view move and turn this light",
+      click: () => {
+        const light = selected();
+        if (light) viewer.handles.toggle({ kind: "light", name: light.name });
+      },
+    },
+    "Handles in the view",
+  );
   const dial = createSunDial("Direction of the sun", (direction) => patch({ direction }));
   const dialRow = element("div", { class: "dial-row" }, dial.node);
   const colour = element("input", {
@@ -50,12 +69,14 @@ export function createLightSection(viewer: Viewer): HTMLElement {
     "div",
     { class: "section-body" },
     field("Light", select, enabled, reset, remove),
+    element("div", { class: "tool-buttons" }, handles),
     dialRow,
     field("Colour", colour),
     ...rows.nodes,
   );
   const added = createAdder(viewer, (name) => {
     select.value = name;
+    viewer.handles.choose({ kind: "light", name });
     show();
   });
   const show = (): void => {
@@ -64,6 +85,8 @@ export function createLightSection(viewer: Viewer): HTMLElement {
     if (!light) return;
     select.value = light.name;
     enabled.checked = light.enabled;
+    const target = { kind: "light", name: light.name } as const;
+    handles.setAttribute("aria-pressed", String(viewer.handles.shows(target)));
     dialRow.hidden = light.type !== "directional";
     if (light.direction) dial.show(light.direction);
     colour.value = displayColour(light.color);
@@ -86,6 +109,8 @@ export function createLightSection(viewer: Viewer): HTMLElement {
   parts.lights.watch(update);
   viewer.scene.watch(update);
   viewer.capabilities.methods.watch(update);
+  viewer.handles.target.watch(show);
+  watchUnfolded(section, (unfolded) => viewer.handles.setListed("light", unfolded));
   return section;
 }
 

@@ -2,13 +2,12 @@
 
 import type { SceneInfo } from "heliograph/messages.ts";
 import type { Viewer } from "../../session/viewer.ts";
-import type { AutoRotate } from "../../view/auto_rotate.ts";
 import type { PointPicker } from "../../view/picker.ts";
 import { element, icon, setText } from "../../widgets/element.ts";
 import { requiresControl } from "../../widgets/requires_control.ts";
 import { createNodeSection } from "../nodes/node_section.ts";
 import { mountSettings } from "../settings/settings_sections.ts";
-import { createCameraFields } from "./camera_fields.ts";
+import { type CameraTools, createCameraFields } from "./camera_fields.ts";
 import { createEditsSection } from "./edits_section.ts";
 import { createEnvironmentField } from "./environment_field.ts";
 import { createLightSection } from "./light_section.ts";
@@ -21,12 +20,12 @@ import { createPlanesSection } from "./section_planes.ts";
 import { shadingModes } from "./shading_modes.ts";
 
 /** Groups of settings that are shown here instead of in the Settings tab. */
-export const appearanceGroups = ["exposure", "tone_map", "environment", "background"];
+export const appearanceGroups = ["lens", "exposure", "tone_map", "environment", "background"];
 
 export function createSceneTab(
   viewer: Viewer,
   picker: PointPicker,
-  rotation: AutoRotate,
+  camera: CameraTools,
   upload: (file: File) => void,
 ): HTMLElement {
   const facts = element("p", { class: "facts" });
@@ -48,7 +47,7 @@ export function createSceneTab(
       facts,
       warnings,
       ...createPartFields(viewer),
-      ...createCameraFields(viewer, rotation),
+      ...createCameraFields(viewer, camera),
       ...createEnvironmentField(viewer, upload),
     ),
     createNodeSection(viewer, picker),

@@ -1,5 +1,5 @@
-// Planes that cut the scene open: along the axes or facing the camera; each can be moved, flipped,
-// switched off and removed.
+// Planes that cut the scene open: along the axes or facing the camera; each can be moved, here or
+// by handles in the view, flipped, switched off and removed.
 
 import type { Vector3 } from "heliograph/json.ts";
 import type { SectionPlane } from "heliograph/messages.ts";
@@ -8,7 +8,7 @@ import { maxPlanes, planeName, planeRange } from "../../session/section_store.ts
 import type { Viewer } from "../../session/viewer.ts";
 import { button, element } from "../../widgets/element.ts";
 import { field } from "../../widgets/field.ts";
-import { createSection } from "../../widgets/section.ts";
+import { createSection, watchUnfolded } from "../../widgets/section.ts";
 import { createSliderRow } from "../../widgets/slider_row.ts";
 
 interface PlaneRow {
@@ -49,6 +49,8 @@ export function createPlanesSection(viewer: Viewer): HTMLElement {
     update();
   });
   viewer.capabilities.methods.watch(update);
+  viewer.handles.target.watch(show);
+  watchUnfolded(section, (unfolded) => viewer.handles.setListed("plane", unfolded));
   return section;
 }
 
@@ -57,7 +59,9 @@ function createAdders(viewer: Viewer): HTMLElement {
   const adder = (label: string, tip: string, normal: () => Vector3 | null): HTMLButtonElement => {
     const add = (): void => {
       const direction = normal();
-      if (direction) viewer.section.add(direction, label);
+      if (!direction) return;
+      viewer.section.add(direction, label);
+      viewer.handles.choose({ kind: "plane", index: viewer.section.planes.value.length - 1 });
     };
     return element(
       "button",
@@ -90,8 +94,15 @@ function createPlaneRow(viewer: Viewer, normal: Vector3, index: number): PlaneRo
     name: `section_plane_${index + 1}`,
     change: () => store.patch(index, { enabled: enabled.checked }, "section plane switched"),
   });
+  const target = { kind: "plane", index } as const;
+  const handles = button(`Handles of plane ${index + 1}`, "target", () =>
+    viewer.handles.toggle(target),
+  );
   const flip = button(`Flip plane ${index + 1}`, "split", () => store.flip(index));
-  const remove = button(`Remove plane ${index + 1}`, "close", () => store.remove(index));
+  const remove = button(`Remove plane ${index + 1}`, "close", () => {
+    viewer.handles.planeRemoved(index);
+    store.remove(index);
+  });
   const slider = createSliderRow(
     {
       label: `Position ${index + 1}`,
@@ -104,11 +115,12 @@ function createPlaneRow(viewer: Viewer, normal: Vector3, index: number): PlaneRo
     (offset) => store.patch(index, { offset }, "section plane moved"),
   );
   return {
-    node: element("div", {}, field(name, enabled, flip, remove), slider.node),
+    node: element("div", {}, field(name, enabled, handles, flip, remove), slider.node),
     fits: (plane) => length(subtract(plane.normal, normal)) < 1e-4,
     show: (plane) => {
       enabled.checked = plane.enabled !== false;
       slider.show(plane.offset);
+      handles.setAttribute("aria-pressed", String(viewer.handles.shows(target)));
     },
   };
 }

@@ -7,6 +7,7 @@ import type {
   Snap,
 } from "heliograph/messages.ts";
 import { Signal } from "../../common/signal.ts";
+import { type ImportResult, isSameAnnotation } from "./annotation_file.ts";
 import { MarkStore, type MarksHost } from "./mark_store.ts";
 
 export class Annotations extends MarkStore<Annotation, AnnotationList, AnnotationsAddParams> {
@@ -43,6 +44,22 @@ export class Annotations extends MarkStore<Annotation, AnnotationList, Annotatio
       undo: () => void send(before),
       redo: () => void send(text),
     });
+  }
+
+  /** Adds those of a file that are not there yet, as one step of the history. @throws ChannelClosed */
+  async import(entries: readonly AnnotationsAddParams[]): Promise<ImportResult> {
+    const before = this.list.value;
+    const numbered = entries.map((request, index) => ({ request, entry: index + 1 }));
+    const fresh = numbered.filter(
+      ({ request }) => !before.some((one) => isSameAnnotation(one, request)),
+    );
+    const refusals = await this.addAll(
+      fresh.map(({ request }) => request),
+      "annotations imported",
+    );
+    const refused = [...refusals].map(([at, reason]) => ({ entry: fresh[at]?.entry ?? 0, reason }));
+    const known = entries.length - fresh.length;
+    return { added: fresh.length - refused.length, known, refused };
   }
 
   /** Asks which are hidden in the newest frame; not while the last answer is awaited. */

@@ -2,7 +2,7 @@
 // by this page can be undone.
 
 import type { AnimationState, SceneInfo } from "heliograph/messages.ts";
-import type { RpcPeer } from "heliograph/rpc.ts";
+import { RpcError, type RpcPeer } from "heliograph/rpc.ts";
 import { Signal } from "../../common/signal.ts";
 import { followMotion } from "./moving_points.ts";
 
@@ -88,6 +88,31 @@ export class MarkStore<
     if (!(await this.change(() => this.calls.add(request)))) return;
     const added = this.list.value.find(({ id }) => !before.some((one) => one.id === id));
     if (added) this.record(`${this.calls.nameOf(added)} added`, [], [added]);
+  }
+
+  /**
+   * Adds several as one step of the history, `label`; gives why some were refused, by their places in
+   * the list. @throws ChannelClosed
+   */
+  protected async addAll(requests: readonly Request[], label: string): Promise<Map<number, string>> {
+    const refused = new Map<number, string>();
+    const added: Item[] = [];
+    try {
+      for (const [index, request] of requests.entries()) {
+        const before = this.list.value;
+        try {
+          this.take(await this.calls.add(request));
+        } catch (error) {
+          if (!(error instanceof RpcError)) throw error;
+          refused.set(index, error.sentence);
+          continue;
+        }
+        added.push(...this.list.value.filter(({ id }) => !before.some((one) => one.id === id)));
+      }
+    } finally {
+      if (added.length > 0) this.record(label, [], added);
+    }
+    return refused;
   }
 
   async remove(item: Item): Promise<void> {
