@@ -10,6 +10,7 @@ namespace heliograph::cli {
 int run(const ServeOptions& options);
 int run(const RenderOptions& options);
 int run(const CompareOptions& options);
+int run(const ExportOptions& options);
 int run(const DevicesOptions& options);
 int run(const SchemaOptions& options);
 int run(const HealthOptions& options);

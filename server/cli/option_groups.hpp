@@ -54,5 +54,7 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options);
 CLI::App* add_import(CLI::App& app, ImportOptions& options);
 /// Adds the command "compare".
 CLI::App* add_compare(CLI::App& app, CompareOptions& options);
+/// Adds the command "export".
+CLI::App* add_export(CLI::App& app, ExportOptions& options);
 
 }  // namespace heliograph::cli

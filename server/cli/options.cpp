@@ -27,6 +27,7 @@ constexpr const char* description =
 constexpr const char* program_examples = R"text(Examples:
   heliograph serve                            the demo scene at http://127.0.0.1:8080/
   heliograph render helmet.glb -o helmet.png  one image, no network
+  heliograph export helmet.glb --edits edits.json -o edited.glb
   heliograph devices                          the Vulkan devices, and why one is chosen
 
 "heliograph COMMAND --help" explains each command.)text";
@@ -211,6 +212,7 @@ Command parse(const std::vector<std::string>& given) {
   ServeOptions serve;
   RenderOptions render;
   CompareOptions compare;
+  ExportOptions exported;
   DevicesOptions devices;
   SchemaOptions schema;
   HealthOptions health;
@@ -219,6 +221,7 @@ Command parse(const std::vector<std::string>& given) {
   const CLI::App* serve_command = add_serve(app, serve);
   const CLI::App* render_command = add_render(app, render);
   const CLI::App* compare_command = add_compare(app, compare);
+  const CLI::App* export_command = add_export(app, exported);
   const CLI::App* devices_command = add_devices(app, devices);
   const CLI::App* schema_command = add_schema(app, schema);
   const CLI::App* health_command = add_health(app, health);
@@ -249,6 +252,7 @@ Command parse(const std::vector<std::string>& given) {
   if (*serve_command) return serve;
   if (*render_command) return render;
   if (*compare_command) return compare;
+  if (*export_command) return exported;
   if (*devices_command) return devices;
   if (*schema_command) return schema;
   if (*mcp_command) return mcp;

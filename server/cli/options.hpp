@@ -84,6 +84,7 @@ struct RenderOptions {
   std::string format;               // empty: by the extension of the output
   std::string reference;            // reference.scope; empty: no path tracing
   std::string edits;                // file; empty: none
+  std::string path;                 // file of a camera path; empty: none
   std::string orbit;                // AZIMUTH,ELEVATION; empty: none
   SettingsOptions settings;
   scene::ImportLimits limits;
@@ -105,6 +106,14 @@ struct CompareOptions {
   std::string token;
   std::string authorities;  // file; empty: the system's
   RenderOptions render;     // of scenes, both
+};
+
+struct ExportOptions {
+  std::string scene;    // file
+  std::string variant;  // of its materials; empty: the file's own
+  std::string edits;    // file; empty: none
+  std::string output;
+  scene::ImportLimits limits;
 };
 
 struct DevicesOptions {
@@ -144,8 +153,9 @@ struct Finished {
   int exit_code = 0;
 };
 
-using Command = std::variant<Finished, ServeOptions, RenderOptions, CompareOptions, DevicesOptions,
-                             SchemaOptions, HealthOptions, ImportOptions, McpOptions>;
+using Command =
+    std::variant<Finished, ServeOptions, RenderOptions, CompareOptions, ExportOptions,
+                 DevicesOptions, SchemaOptions, HealthOptions, ImportOptions, McpOptions>;
 
 /// Reads the command line, HELIOGRAPH_* variables and the file of --config, in this order of
 /// precedence. Help is printed to stdout, errors to stderr with the nearest known name.

@@ -84,7 +84,8 @@ SessionHost::SessionHost(const render::Engines& engines, HostOptions options)
       thumbnails_(catalogue_, options_.thumbnail_folder,
                   [this](const std::string& scene, SceneThumbnails::Rendered done) {
                     render_thumbnail(scene, std::move(done));
-                  }) {
+                  }),
+      exporter_(options_.import_limits) {
   const auto report_loss = [this](std::size_t device) {
     devices_.loop(device).report_device_loss();
   };
@@ -205,6 +206,7 @@ void SessionHost::stop() {
   if (idle_thread_.joinable()) idle_thread_.join();
   loader_.stop();
   environments_.stop();
+  exporter_.stop();
   devices_.stop();
 }
 

@@ -12,6 +12,7 @@
 #include "protocol/json/jsonrpc.hpp"
 #include "render/api/renderer.hpp"
 #include "session/devices/render_devices.hpp"
+#include "session/edits/scene_exporter.hpp"
 #include "session/library/environment_library.hpp"
 #include "session/library/scene_catalogue.hpp"
 #include "session/library/scene_loader.hpp"
@@ -62,6 +63,7 @@ class SessionHost {
   SessionRegistry& sessions() { return sessions_; }
   const SessionRegistry& sessions() const { return sessions_; }
   EnvironmentLibrary& environments() { return environments_; }
+  SceneExporter& exporter() { return exporter_; }
   /// The small image of a scene; see SceneThumbnails::get.
   protocol::Result<SceneThumbnails::File> scene_thumbnail(const std::string& scene);
   /// Null: there are none.
@@ -109,6 +111,7 @@ class SessionHost {
   SceneLoader loader_;
   EnvironmentLibrary environments_;
   SceneThumbnails thumbnails_;
+  SceneExporter exporter_;
   std::uint64_t frames_before_ = 0;  // of all sessions, when is_idle() was asked last
   WakeEvent idle_check_;
   std::atomic<bool> stopping_ = false;

@@ -136,6 +136,15 @@ Result<protocol::EditsState> SessionScene::edits() const {
   return state;
 }
 
+Result<SceneExport> SessionScene::exported() const {
+  const std::lock_guard lock(core_.mutex);
+  if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
+  const auto& environment = core_.settings.environment;
+  const bool other =
+      core_.environment_name || environment.rotation != 0.0f || environment.intensity != 1.0f;
+  return make_export(core_.scene, core_.edits, core_.nodes, core_.section, other);
+}
+
 Result<void> SessionScene::apply_edits(const protocol::EditDocument& document,
                                        const std::string& by) {
   const std::lock_guard lock(core_.mutex);

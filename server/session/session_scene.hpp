@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "session/edits/scene_export.hpp"
 #include "session/library/loaded_scene.hpp"
 #include "session/state/session_core.hpp"
 
@@ -38,6 +39,8 @@ class SessionScene {
   protocol::Result<protocol::SectionState> set_section(const protocol::Section& section,
                                                        const std::string& by);
   protocol::Result<protocol::EditsState> edits() const;
+  /// The scene as it is edited, for a file.
+  protocol::Result<SceneExport> exported() const;
   /// All but the choice of an environment by name.
   protocol::Result<void> apply_edits(const protocol::EditDocument& document, const std::string& by);
   /// What is in effect, without the environments of the catalogue.

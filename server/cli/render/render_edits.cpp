@@ -17,22 +17,31 @@ namespace {
 
 constexpr std::uintmax_t most_bytes = 64u << 20;
 
-}  // namespace
-
-protocol::EditDocument read_edits(const std::string& file) {
+template <class Document>
+Document read_document(const std::string& option, const std::string& file) {
+  const std::string what = option + " " + file + ": ";
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw std::runtime_error("--edits " + file + ": " + std::strerror(errno));
+  if (!in) throw std::runtime_error(what + std::strerror(errno));
   std::error_code unknown;
   if (std::filesystem::file_size(file, unknown) > most_bytes && !unknown) {
-    throw std::invalid_argument("--edits " + file + ": must be at most 64 MiB");
+    throw std::invalid_argument(what + "must be at most 64 MiB");
   }
   const std::string text(std::istreambuf_iterator<char>(in), {});
   const auto json = protocol::RawJson::parse(text);
-  if (!json)
-    throw std::invalid_argument("--edits " + file + ": is no JSON: " + json.error().message);
-  auto document = protocol::decode<protocol::EditDocument>(*json);
-  if (!document) throw std::invalid_argument("--edits " + file + ": " + document.error().message);
+  if (!json) throw std::invalid_argument(what + "is no JSON: " + json.error().message);
+  auto document = protocol::decode<Document>(*json);
+  if (!document) throw std::invalid_argument(what + document.error().message);
   return *std::move(document);
+}
+
+}  // namespace
+
+protocol::EditDocument read_edits(const std::string& file) {
+  return read_document<protocol::EditDocument>("--edits", file);
+}
+
+protocol::CameraPath read_path(const std::string& file) {
+  return read_document<protocol::CameraPath>("--path", file);
 }
 
 std::filesystem::path edited_environment(const std::string& name,

@@ -17,6 +17,8 @@ namespace heliograph::cli {
 /// The document of --edits.
 /// @throws std::runtime_error, std::invalid_argument naming the option
 protocol::EditDocument read_edits(const std::string& file);
+/// The camera path of --path, likewise.
+protocol::CameraPath read_path(const std::string& file);
 
 /// The file of the environment that a document names, among those beside the scene and below its
 /// folder; empty: the studio.

@@ -82,6 +82,11 @@ void add_camera_options(CLI::App& command, RenderOptions& options) {
                   "Camera that sees the whole scene from a direction, degrees: azimuth, 0 in "
                   "front and 90 on the right, and elevation, 90 above")
       ->type_name("AZIMUTH,ELEVATION");
+  command
+      .add_option("--path", options.path,
+                  "JSON file of a camera that moves: {\"keys\": [{\"eye\": [x, y, z], \"target\": "
+                  "[x, y, z]}, ...], \"seconds\": 6}")
+      ->type_name("FILE");
   command.add_flag("--fit", request.fit,
                    "Keep the direction of the cameras, but move them so that they see the whole "
                    "scene");

@@ -8,12 +8,15 @@ namespace heliograph::net {
 
 void Content::add(std::string bytes) {
   const std::uint64_t size = bytes.size();
-  segments_.push_back({.bytes = std::move(bytes), .file = {}, .first = 0, .size = size});
+  segments_.push_back(
+      {.bytes = std::move(bytes), .file = {}, .first = 0, .size = size, .owner = nullptr});
   size_ += size;
 }
 
-void Content::add_file(std::filesystem::path file, std::uint64_t size) {
-  segments_.push_back({.bytes = {}, .file = std::move(file), .first = 0, .size = size});
+void Content::add_file(std::filesystem::path file, std::uint64_t size,
+                       std::shared_ptr<const void> owner) {
+  segments_.push_back(
+      {.bytes = {}, .file = std::move(file), .first = 0, .size = size, .owner = std::move(owner)});
   size_ += size;
 }
 

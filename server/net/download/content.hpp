@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,10 +20,13 @@ class Content {
     std::filesystem::path file;  // else this one's bytes
     std::uint64_t first = 0;     // of the file
     std::uint64_t size = 0;
+    std::shared_ptr<const void> owner;  // of the file
   };
 
   void add(std::string bytes);
-  void add_file(std::filesystem::path file, std::uint64_t size);
+  /// `owner`: what keeps the file in existence, until it was sent.
+  void add_file(std::filesystem::path file, std::uint64_t size,
+                std::shared_ptr<const void> owner = nullptr);
   std::uint64_t size() const { return size_; }
   const std::vector<Segment>& segments() const { return segments_; }
   /// `size` bytes from `first` on, which must be there.

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "net/download/scene_download.hpp"
 #include "net/http/image_request.hpp"
 #include "net/http/job_routes.hpp"
 #include "net/http/token_page.hpp"
@@ -18,6 +19,7 @@ namespace {
 constexpr std::string_view sessions_prefix = "/api/v1/sessions/";
 constexpr std::string_view scenes_prefix = "/api/v1/scenes/";
 constexpr std::string_view environments_prefix = "/api/v1/environments/";
+constexpr std::string_view exported_suffix = "/scene.glb";
 constexpr std::string_view environment_suffix = "/thumbnail.png";
 constexpr std::string_view scene_suffix = "/thumbnail.jpg";
 constexpr std::string_view viewer_module = "/heliograph-viewer.js";
@@ -226,6 +228,10 @@ void Router::handle(const HttpRequest& request, const Pending& pending, Reply re
     return reply(method_not_allowed("PUT"));
   }
   if (!reads) return reply(method_not_allowed("GET"));
+  if (const auto session = between(sessions_prefix, request.path, exported_suffix)) {
+    if (request.method != "GET") return reply(method_not_allowed("GET"));
+    return exported_scene(request, *session, admission.role, pending, std::move(reply));
+  }
   if (const auto address = image_address(request.path)) {
     return image(request, *address, admission.role, pending, std::move(reply));
   }
@@ -324,6 +330,29 @@ void Router::call_tool(const HttpRequest& request, Role role, const Pending& pen
     if (answer.empty()) return reply({.status = 202, .content_type = {}});
     reply(json_response(std::move(answer)));
   });
+}
+
+/// Geometry and textures as they are in the file, which images do not give away: not for those that
+/// may only watch.
+void Router::exported_scene(const HttpRequest& request, std::string_view session, Role role,
+                            const Pending& pending, Reply reply) const {
+  const auto found = host_.sessions().find(session);
+  if (!found) return reply(error_response(found.error()));
+  if (role != Role::control) {
+    return reply(text_response(403, "This token is read-only and cannot export scenes."));
+  }
+  if (const auto known = check_parameters(request, {}); !known) {
+    return reply(error_response(known.error()));
+  }
+  auto scene = (*found)->scene().exported();
+  if (!scene) return reply(error_response(scene.error()));
+  (*found)->mark_used();
+  const std::string name = scene->scene->name;
+  host_.exporter().write(*std::move(scene), pending,
+                         [reply, name](protocol::Result<session::ExportedScene> exported) {
+                           if (!exported) return reply(error_response(exported.error()));
+                           reply(scene_download(name, *exported));
+                         });
 }
 
 void Router::image(const HttpRequest& request, const ImageAddress& address, Role role,

@@ -72,6 +72,8 @@ class Router {
   void call_tool(const HttpRequest& request, Role role, const Pending& pending, Reply reply) const;
   void environment_thumbnail(std::string_view file, Reply reply) const;
   HttpResponse scene_thumbnail(std::string_view scene) const;
+  void exported_scene(const HttpRequest& request, std::string_view session, Role role,
+                      const Pending& pending, Reply reply) const;
   void image(const HttpRequest& request, const ImageAddress& address, Role role,
              const Pending& pending, Reply reply) const;
 

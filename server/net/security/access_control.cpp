@@ -171,7 +171,8 @@ Headers AccessControl::cors_headers(const HttpRequest& request) const {
       {"Vary", "Origin"},
       {"Access-Control-Allow-Origin", std::string(request.header("origin"))},
       {"Access-Control-Allow-Credentials", "true"},
-      {"Access-Control-Expose-Headers", "ETag, Retry-After, X-Heliograph-Samples"},
+      {"Access-Control-Expose-Headers",
+       "ETag, Retry-After, X-Heliograph-Samples, X-Heliograph-Warnings"},
       {"Cross-Origin-Resource-Policy", "cross-origin"},
   };
 }

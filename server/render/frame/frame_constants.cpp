@@ -54,6 +54,7 @@ void add_environment(shared::FrameConstants& constants, const EnvironmentView& e
 /// A thin lens: its aperture and what it focuses on (Potmesil and Chakravarty 1981).
 void add_lens(shared::FrameConstants& constants, const scene::Camera& camera,
               const protocol::Settings::Lens& lens) {
+  constants.focus_distance = 1.0f;
   if (!lens.depth_of_field || camera.orthographic_height > 0.0f) return;
   const float half_height = 0.5e-3f * lens.sensor_height;  // metres
   const float focal_length = half_height / std::tan(glm::radians(0.5f * camera.vertical_fov));

@@ -205,6 +205,21 @@ Result<void> LightEdits::apply(const protocol::EditDocument& document) {
   return {};
 }
 
+std::vector<scene::LightChange> LightEdits::changes() const {
+  std::vector<scene::LightChange> changes;
+  for (const Light& light : lights_) {
+    LightInfo shining = light.now;
+    shining.enabled = true;
+    const bool same = light.now.changed.empty() && light.now.enabled;
+    changes.push_back(
+        {.name = light.now.name,
+         .device = same ? light.device : device_form(shining, light.initial, light.device),
+         .off = !light.now.enabled,
+         .removed = light.removed});
+  }
+  return changes;
+}
+
 void LightEdits::update_device() {
   const bool edited = std::ranges::any_of(lights_, [](const Light& light) {
     return light.removed || light.now.added || !light.now.changed.empty();

@@ -6,6 +6,7 @@
 
 #include "protocol/messages/edit_messages.hpp"
 #include "protocol/result.hpp"
+#include "scene/gltf/export/scene_changes.hpp"
 #include "scene/scene.hpp"
 
 namespace heliograph::session {
@@ -34,6 +35,8 @@ class LightEdits {
   /// null until anything differs from the file. A change makes a new list: references to the old
   /// one stay valid and unchanged.
   const std::shared_ptr<const Lights>& device() const { return device_; }
+  /// The same for a file: those that are off keep their colour.
+  std::vector<scene::LightChange> changes() const;
 
  private:
   struct Light {

@@ -44,6 +44,8 @@ class SceneEdits {
     return materials_.apply(document);
   }
 
+  /// See LightEdits::changes.
+  std::vector<scene::LightChange> light_changes() const { return lights_.changes(); }
   /// See LightEdits::device and MaterialEdits::device.
   const std::shared_ptr<const Lights>& device_lights() const { return lights_.device(); }
   const std::shared_ptr<const Materials>& device_materials() const { return materials_.device(); }

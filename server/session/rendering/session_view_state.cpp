@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "scene/animation/pose.hpp"
-#include "scene/camera.hpp"
+#include "scene/camera/camera.hpp"
 #include "session/devices/device_migration.hpp"
 #include "session/event_log.hpp"
 #include "session/rendering/session_view.hpp"

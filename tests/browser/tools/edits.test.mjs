@@ -75,6 +75,27 @@ stage.test("edits are saved as a document, opened again, and undone as one", asy
   assert.deepEqual(await edits(), before);
 });
 
+stage.test("the edited scene is exported as a .glb file, which tells what it lacks", async () => {
+  const { page } = await stage.sharedViewer();
+  const [first] = await lights();
+  await call("lights.patch", { light: first.name, patch: { intensity: 5 } });
+  await call("section.set", { planes: [{ normal: [1, 0, 0], offset: 0.5 }] });
+  const section = page.locator('[data-section="edits"]');
+  const file = await downloaded(page, () =>
+    section.getByRole("button", { name: "Export as .glb" }).click(),
+  );
+  assert.equal(file.name, "shadow_objects_edited.glb");
+  assert.equal(file.bytes.toString("latin1", 0, 4), "glTF");
+  const document = JSON.parse(file.bytes.subarray(20, 20 + file.bytes.readUInt32LE(12)));
+  const intensities = document.extensions.KHR_lights_punctual.lights.map((one) => one.intensity);
+  assert.ok(intensities.includes(5), "the changed light");
+  await section.locator("li", { hasText: "section planes" }).waitFor();
+  await section.getByRole("button", { name: "Export as .glb" }).waitFor();
+  await screenshot(page, "exported_scene");
+  await call("section.set", { planes: [] });
+  await call("lights.patch", { light: first.name, patch: { intensity: null } });
+});
+
 for (const colorScheme of ["dark", "light"]) {
   stage.test(`lights and edits are accessible in the ${colorScheme} theme`, async () => {
     const { page } = await stage.watch({ colorScheme });

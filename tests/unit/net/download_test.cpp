@@ -4,6 +4,7 @@
 #include <array>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -60,6 +61,21 @@ class Download : public testing::Test {
       std::filesystem::path(testing::TempDir()) / ("download" + std::to_string(getpid()));
   std::string if_range_;
 };
+
+TEST_F(Download, TemporaryFilesLastAsLongAsTheirParts) {
+  auto owner = std::make_shared<int>(0);
+  const std::weak_ptr<int> lasts = owner;
+  Content part;
+  {
+    Content whole;
+    whole.add_file(file_, 10, std::move(owner));
+    part = whole.part(2, 3);
+  }
+  EXPECT_FALSE(lasts.expired());
+  EXPECT_EQ(read(part), "234");
+  part = {};
+  EXPECT_TRUE(lasts.expired());
+}
 
 TEST_F(Download, EveryPartIsThatOfTheWhole) {
   const Content whole = content();

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "scene/camera.hpp"
+#include "scene/camera/camera.hpp"
 
 namespace heliograph::render {
 namespace {

@@ -140,11 +140,17 @@ bool can_write(const fs::path& file) {
 
 void write_whole(const fs::path& path, const std::vector<std::uint8_t>& bytes) {
   if (path.empty()) return write_to_standard_output(bytes);
+  write_whole(path, [&](std::ostream& file) {
+    file.write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+  });
+}
+
+void write_whole(const fs::path& path, const std::function<void(std::ostream& file)>& write) {
   PartialFile partial(path);
   errno = 0;
   std::ofstream file(partial.name(), std::ios::binary);
-  file.write(reinterpret_cast<const char*>(bytes.data()),
-             static_cast<std::streamsize>(bytes.size()));
+  write(file);
   file.close();
   if (!file) {
     const std::string why = errno == 0 ? "" : std::string(": ") + std::strerror(errno);

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <iosfwd>
 #include <memory>
 #include <vector>
 
@@ -18,6 +20,9 @@ bool can_write(const std::filesystem::path& file);
 /// Writes a file as a whole: it has the name only when it is complete. An empty path is standard
 /// output. @throws std::runtime_error
 void write_whole(const std::filesystem::path& path, const std::vector<std::uint8_t>& bytes);
+/// The same of a file, not standard output, that `write` writes. @throws what `write` throws, too
+void write_whole(const std::filesystem::path& path,
+                 const std::function<void(std::ostream& file)>& write);
 
 /// The file of an image, or of all frames of a video.
 class OutputFile {

@@ -16,21 +16,23 @@
 namespace heliograph::scene {
 
 GltfFile::GltfFile(const std::filesystem::path& path, const ImportLimits& limits,
-                   Warnings& warnings, const std::stop_token& stop)
+                   Warnings& warnings, const std::stop_token& stop, Document document)
     : GltfFile(examine_file(path), ConfinedFolder(path.parent_path(), limits.file_bytes),
-               RegularFile(path, limits.file_bytes, "the file"), limits, warnings, stop) {}
+               RegularFile(path, limits.file_bytes, "the file"), limits, warnings, stop, document) {
+}
 
 GltfFile::GltfFile(RegularFile file, const ImportLimits& limits, Warnings& warnings,
                    const std::stop_token& stop)
-    : GltfFile({}, {}, std::move(file), limits, warnings, stop) {}
+    : GltfFile({}, {}, std::move(file), limits, warnings, stop, Document::dropped) {}
 
 GltfFile::GltfFile(SourceFile self, ConfinedFolder folder, RegularFile file,
-                   const ImportLimits& limits, Warnings& warnings, const std::stop_token& stop)
+                   const ImportLimits& limits, Warnings& warnings, const std::stop_token& stop,
+                   Document document)
     : stop_(stop),
       self_(std::move(self)),
       folder_(std::move(folder)),
       container_(std::move(file)),
-      document_(read_document(limits, warnings)),
+      document_(read_document(limits, warnings, document)),
       model_(parse_model(document_)) {
   document_.text = {};
   // tinygltf's last view stands for none.
@@ -44,11 +46,24 @@ GltfFile::GltfFile(SourceFile self, ConfinedFolder folder, RegularFile file,
   read_views(limits);
 }
 
-CheckedDocument GltfFile::read_document(const ImportLimits& limits, Warnings& warnings) {
+CheckedDocument GltfFile::read_document(const ImportLimits& limits, Warnings& warnings,
+                                        Document document) {
   nlohmann::json json =
       parse_json(container_.take_text(), limits.json_depth, limits.json_values, stop_);
   check_versions(json, warnings);
-  return check_document(json, limits, warnings, stop_);
+  CheckedDocument checked = check_document(json, limits, warnings, stop_);
+  if (document == Document::kept) whole_ = std::make_shared<nlohmann::json>(std::move(json));
+  return checked;
+}
+
+nlohmann::json GltfFile::take_document() {
+  return std::move(*whole_);
+}
+
+void GltfFile::copy_buffer(std::size_t buffer, std::span<std::uint8_t> to) const {
+  const Bytes& bytes = buffers_[buffer];
+  if (bytes.binary) return container_.read_binary(0, to, stop_);
+  std::ranges::copy(bytes.all, to.begin());
 }
 
 std::vector<SourceFile> GltfFile::sources() const {

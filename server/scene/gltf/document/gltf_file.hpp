@@ -30,9 +30,12 @@ struct BufferView {
 /// .glb are read on demand, straight to where they stay.
 class GltfFile {
  public:
+  /// Whether the whole document stays, with what no table lists.
+  enum class Document { dropped, kept };
+
   /// @throws ImportError, LoadCancelled
   GltfFile(const std::filesystem::path& path, const ImportLimits& limits, Warnings& warnings,
-           const std::stop_token& stop);
+           const std::stop_token& stop, Document document = Document::dropped);
   /// A file that is alone: others that it refers to are missing. @throws ImportError, LoadCancelled
   GltfFile(RegularFile file, const ImportLimits& limits, Warnings& warnings,
            const std::stop_token& stop);
@@ -47,13 +50,24 @@ class GltfFile {
   /// Bytes behind the "uri" of the object at `place`: base64 data or a file beside the scene.
   /// @throws ImportError
   std::vector<std::uint8_t> resource(const std::string& place);
+  /// The "uri" of the object at `place`, unless it was base64 data that resource() has returned.
+  const std::string& address(const std::string& place) const { return document_.uris.at(place); }
   /// The file itself and all files read with it, as they were before reading.
   std::vector<SourceFile> sources() const;
 
+  /// The whole document once, where it is kept, with empty addresses.
+  nlohmann::json take_document();
+  /// Whether a view uses a buffer that has data.
+  bool has_data(std::size_t buffer) const { return document_.buffers_with_data[buffer]; }
+  std::uint64_t buffer_bytes(std::size_t buffer) const { return document_.buffer_lengths[buffer]; }
+  /// All bytes of a buffer with data, also those that nothing reads; `to` is as long.
+  /// @throws ImportError, LoadCancelled
+  void copy_buffer(std::size_t buffer, std::span<std::uint8_t> to) const;
+
  private:
   GltfFile(SourceFile self, ConfinedFolder folder, RegularFile file, const ImportLimits& limits,
-           Warnings& warnings, const std::stop_token& stop);
-  CheckedDocument read_document(const ImportLimits& limits, Warnings& warnings);
+           Warnings& warnings, const std::stop_token& stop, Document document);
+  CheckedDocument read_document(const ImportLimits& limits, Warnings& warnings, Document document);
   void read_buffers();
   /// The bytes that views of the binary chunk need, less the files of images.
   void read_binary(std::span<std::uint8_t> bytes) const;
@@ -64,6 +78,7 @@ class GltfFile {
   SourceFile self_;
   ConfinedFolder folder_;
   Container container_;
+  std::shared_ptr<nlohmann::json> whole_;  // where it is kept
   CheckedDocument document_;
   tinygltf::Model model_;
   /// Of a buffer. What nothing reads of the binary chunk is not written, and takes no memory.

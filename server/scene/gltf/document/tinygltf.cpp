@@ -7,3 +7,14 @@
 #define TINYGLTF_IMPLEMENTATION
 #include <tiny_gltf.h>
 // clang-format on
+
+#include "scene/gltf/export/glb_writer.hpp"
+
+namespace heliograph::scene {
+
+void write_glb(std::ostream& out, const std::string& document,
+               const std::vector<std::uint8_t>& binary) {
+  tinygltf::WriteBinaryGltfStream(out, document, binary);
+}
+
+}  // namespace heliograph::scene

@@ -5,6 +5,7 @@
 
 #include "scene/gltf/export/glb_export.hpp"
 #include "scene/import.hpp"
+#include "tests/unit/scene/support/encoders.hpp"
 #include "tests/unit/scene/support/gltf_builder.hpp"
 
 namespace heliograph::scene::test {
@@ -90,7 +91,7 @@ GltfBuilder lit() {
       {{"type", "spot"}, {"spot", {{"innerConeAngle", 0.2}, {"outerConeAngle", 0.5}}}}};
   const auto light = [](int index) { return json{{"KHR_lights_punctual", {{"light", index}}}}; };
   builder.add("nodes", {{"name", "sun"}, {"extensions", light(0)}, {"children", {2}}});
-  builder.add("nodes", {{"name", "lamp"}, {"extensions", light(1)}, {"translation", {1, 2, 3}}});
+  builder.add("nodes", {{"name", "bulb"}, {"extensions", light(1)}, {"translation", {1, 2, 3}}});
   builder.add(
       "nodes",
       {{"name", "rig"}, {"scale", {2, 2, 2}}, {"translation", {0, 5, 0}}, {"children", {4, 5}}});
@@ -158,9 +159,50 @@ TEST(GlbExport, DataUrisAndSeveralBuffersAreJoined) {
   expect_same_geometry(exported.before, exported.after);
 }
 
-TEST(GlbExport, WhatNobodyReadsStays) {
+TEST(GlbExport, CompressedViewsStayCompressed) {
+  GltfBuilder builder = triangle();
+  const Scene plain = builder.import();
+  const Bytes packed = pack_vertices(builder.binary, 12);
+  const json compression = {{"buffer", 0},
+                            {"byteLength", packed.size()},
+                            {"byteStride", 12},
+                            {"count", 3},
+                            {"mode", "ATTRIBUTES"}};
+  builder.json["extensionsRequired"] = {"EXT_meshopt_compression"};
+  builder.json["bufferViews"][0] = {{"buffer", 1},
+                                    {"byteLength", 36},
+                                    {"byteStride", 12},
+                                    {"extensions", {{"EXT_meshopt_compression", compression}}}};
+  builder.json["buffers"] = {
+      {{"byteLength", packed.size()}},
+      {{"byteLength", 36}, {"extensions", {{"EXT_meshopt_compression", {{"fallback", true}}}}}}};
+  builder.binary = packed;
+  Exported exported(builder);
+  exported.write();
+  expect_same_geometry(plain, exported.after);
+  EXPECT_EQ(exported.document().at("bufferViews"), builder.json["bufferViews"]);
+  EXPECT_EQ(exported.document().at("buffers"), builder.json["buffers"]);
+}
+
+TEST(GlbExport, ImagesWithoutTypeGetThatOfTheirBytes) {
+  GltfBuilder builder = triangle();
+  const auto add = [&](std::string file) {
+    builder.add("images", {{"uri", "data:;base64," + base64({file.begin(), file.end()})}});
+  };
+  add(std::string("RIFF\0\0\0\0WEBPVP8 ", 16));
+  add("\xabKTX 20\xbb\r\n\x1a\n");
+  add("\xff\xd8\xff\xe0");
+  Exported exported(builder);
+  exported.write();
+  const json images = exported.document().at("images");
+  EXPECT_EQ(images[0].at("mimeType"), "image/webp");
+  EXPECT_EQ(images[1].at("mimeType"), "image/ktx2");
+  EXPECT_EQ(images[2].at("mimeType"), "image/jpeg");
+}
+
+TEST(GlbExport, WhatTheImporterDoesNotReadStays) {
   GltfBuilder builder = everything();
-  builder.json["asset"]["copyright"] = "somebody";
+  builder.json["asset"]["copyright"] = "the author";
   builder.json["extensionsUsed"].push_back("VENDOR_notes");
   builder.json["extensions"]["VENDOR_notes"] = {{"id", 1234567890123}, {"none", nullptr}};
   builder.json["nodes"][1]["extras"] = {{"id", 1234567890123}};
@@ -261,11 +303,11 @@ TEST(GlbExport, LightsKeepTheirNodesWhereOnlyTheirLightDiffers) {
   exported.write();
   ASSERT_EQ(exported.after.lights.size(), 4u);
   EXPECT_EQ(exported.document().at("nodes").size(), 6u);
-  const shared::Light& lamp = exported.after.lights[1].device;
-  expect_near(lamp.color, {10.0f, 5.0f, 2.5f});
-  EXPECT_EQ(lamp.range, 0.0f);
-  EXPECT_FLOAT_EQ(lamp.radius, 0.2f);
-  EXPECT_EQ(lamp.position, exported.before.lights[1].device.position);
+  const shared::Light& bulb = exported.after.lights[1].device;
+  expect_near(bulb.color, {10.0f, 5.0f, 2.5f});
+  EXPECT_EQ(bulb.range, 0.0f);
+  EXPECT_FLOAT_EQ(bulb.radius, 0.2f);
+  EXPECT_EQ(bulb.position, exported.before.lights[1].device.position);
   expect_near(exported.after.lights[2].device.color, glm::vec3(7.0f));
   EXPECT_EQ(exported.after.lights[3].device.color, glm::vec3(0.0f)) << "shared it, and is off";
 }
@@ -286,7 +328,7 @@ TEST(GlbExport, MovedLightsTakeTheirNodesAlongOrBecomeChildren) {
     return *std::ranges::find(exported.after.lights, name, &Light::name);
   };
   expect_near(found("sun").device.direction, aside);
-  expect_near(found("lamp").device.position, {4.0f, 4.0f, 4.0f});
+  expect_near(found("bulb").device.position, {4.0f, 4.0f, 4.0f});
   expect_near(found("left").device.position, {-3.0f, 1.0f, 2.0f});
   expect_near(found("right").device.position, exported.before.lights[3].device.position);
   EXPECT_FLOAT_EQ(found("left").device.spot_scale, exported.before.lights[2].device.spot_scale);

@@ -1,0 +1,126 @@
+#include "scene/gltf/export/material_export.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "scene/quote.hpp"
+
+namespace heliograph::scene {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* strength_extension = "KHR_materials_emissive_strength";
+constexpr const char* glossiness_extension = "KHR_materials_pbrSpecularGlossiness";
+constexpr const char* variants_extension = "KHR_materials_variants";
+
+template <class Visit>
+void visit_primitives(EditableDocument& document, const Visit& visit) {
+  for (json& mesh : document.list("meshes")) {
+    for (json& primitive : mesh["primitives"]) visit(primitive);
+  }
+}
+
+/// The material of primitives that have none.
+json& add_default_material(EditableDocument& document) {
+  const std::size_t index = document.append("materials", {{"name", "default"}});
+  visit_primitives(document, [&](json& primitive) {
+    if (!primitive.contains("material")) primitive["material"] = index;
+  });
+  return document.list("materials")[index];
+}
+
+bool has_other_surface(const shared::Material& a, const shared::Material& b) {
+  return a.base_color != b.base_color || a.metallic != b.metallic || a.roughness != b.roughness;
+}
+
+void write_emission(EditableDocument& document, json& material, const glm::vec3& emissive) {
+  const float most = std::max({emissive.x, emissive.y, emissive.z});
+  // A power of two: the factors times it are the emission to the last bit.
+  const float strength = most > 1.0f ? std::exp2(std::ceil(std::log2(most))) : 1.0f;
+  const glm::vec3 factor = emissive / strength;
+  material["emissiveFactor"] = {factor.x, factor.y, factor.z};
+  if (strength == 1.0f) return erase_within(material, "extensions", strength_extension);
+  material["extensions"][strength_extension]["emissiveStrength"] = strength;
+  document.use(strength_extension);
+}
+
+/// Whether the core material is what is shown; one of the specular-glossiness model without
+/// textures becomes it.
+bool shows_core_material(EditableDocument& document, json& material, const std::string& name,
+                         const shared::Material& before) {
+  const auto extensions = material.find("extensions");
+  if (extensions == material.end() || !extensions->contains(glossiness_extension)) return true;
+  if (before.base_color_texture.texture != shared::no_texture) {
+    document.warn("material " + in_quotes(name) +
+                  ": colour, metalness and roughness stay as in the file, since its textures are "
+                  "those of KHR_materials_pbrSpecularGlossiness");
+    return false;
+  }
+  erase_within(material, "extensions", glossiness_extension);
+  material.erase("pbrMetallicRoughness");
+  return true;
+}
+
+void write_surface(json& material, const shared::Material& now) {
+  json& surface = material["pbrMetallicRoughness"];
+  surface["baseColorFactor"] = {now.base_color.x, now.base_color.y, now.base_color.z,
+                                now.base_color.w};
+  surface["metallicFactor"] = now.metallic;
+  surface["roughnessFactor"] = now.roughness;
+}
+
+/// A member of a texture slot, which is without effect where the material has no such texture.
+void write_slot(json& material, const char* slot, const char* member, float value) {
+  const auto found = material.find(slot);
+  if (found != material.end()) (*found)[member] = value;
+}
+
+void write_material(EditableDocument& document, json& material, const std::string& name,
+                    const shared::Material& before, const shared::Material& now) {
+  if (has_other_surface(before, now) && shows_core_material(document, material, name, before)) {
+    write_surface(material, now);
+  }
+  if (before.emissive != now.emissive) write_emission(document, material, now.emissive);
+  if (before.normal_scale != now.normal_scale) {
+    write_slot(material, "normalTexture", "scale", now.normal_scale);
+  }
+  if (before.occlusion_strength != now.occlusion_strength) {
+    write_slot(material, "occlusionTexture", "strength", now.occlusion_strength);
+  }
+}
+
+bool differs_in_factors(const shared::Material& a, const shared::Material& b) {
+  return has_other_surface(a, b) || a.emissive != b.emissive || a.normal_scale != b.normal_scale ||
+         a.occlusion_strength != b.occlusion_strength;
+}
+
+}  // namespace
+
+void export_variant(EditableDocument& document, const Scene& scene) {
+  if (!scene.variant) return;
+  visit_primitives(document, [&](json& primitive) {
+    const auto extensions = primitive.find("extensions");
+    if (extensions == primitive.end() || !extensions->contains(variants_extension)) return;
+    for (const json& mapping : (*extensions)[variants_extension].value("mappings", json::array())) {
+      const json& variants = mapping.at("variants");
+      const bool maps = std::ranges::any_of(
+          variants, [&](const json& variant) { return variant.get<double>() == *scene.variant; });
+      if (maps) primitive["material"] = mapping.at("material");
+    }
+  });
+}
+
+void export_materials(EditableDocument& document, const Scene& scene,
+                      std::span<const shared::Material> materials) {
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    const shared::Material& before = scene.materials[i];
+    if (!differs_in_factors(before, materials[i])) continue;
+    const bool in_file = i < document.list("materials").size();
+    json& material = in_file ? document.list("materials")[i] : add_default_material(document);
+    write_material(document, material, scene.material_names[i], before, materials[i]);
+  }
+}
+
+}  // namespace heliograph::scene

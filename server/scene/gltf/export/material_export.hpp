@@ -1,0 +1,18 @@
+#pragma once
+
+#include <span>
+
+#include "scene/gltf/export/editable_document.hpp"
+#include "scene/scene.hpp"
+
+namespace heliograph::scene {
+
+/// Makes the materials of the variant that the scene shows those of the primitives.
+void export_variant(EditableDocument& document, const Scene& scene);
+
+/// Writes the factors of materials that differ from the scene's, `materials` in its order. What
+/// glTF has no place for is told in warnings.
+void export_materials(EditableDocument& document, const Scene& scene,
+                      std::span<const shared::Material> materials);
+
+}  // namespace heliograph::scene
