@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Creates the root folder of the image: the server, the software Vulkan device, the libraries that
-# these two link, and busybox as a shell. Nothing else of the system is copied.
+# these two link, fonts, and busybox as a shell. Nothing else of the system is copied.
 #   closure.sh FOLDER
 set -euo pipefail
 if [ $# -ne 1 ]; then
@@ -36,12 +36,16 @@ done
 mkdir -p "$root/usr/share/vulkan/icd.d"
 cp /usr/share/vulkan/icd.d/lvp_icd*.json "$root/usr/share/vulkan/icd.d/"
 cp -r --parents /usr/share/heliograph /usr/share/doc/heliograph "$root"
+# Fonts of the texts in captures, and where they are found.
+font=/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf
+cp -r --parents /etc/fonts /usr/share/fontconfig "$root"
+cp --parents "$font" "${font%.ttf}-Bold.ttf" "$root"
 grep -E '^(root|nobody|heliograph):' /etc/passwd >"$root/etc/passwd"
 grep -E '^(root|nogroup|heliograph):' /etc/group >"$root/etc/group"
 # The licences of the copied files. dpkg-query fails if it knows one of the files by another name,
 # but still prints the others.
 { ldd "${programs[@]}" | awk '$2 == "=>" { print $3 }' | xargs readlink -f | sort -u |
-  xargs dpkg-query --search "$driver" 2>/dev/null || true; } | cut -d: -f1 | sort -u |
+  xargs dpkg-query --search "$driver" "$font" 2>/dev/null || true; } | cut -d: -f1 | sort -u |
   while read -r package; do
     file=/usr/share/doc/$package/copyright
     if [ -f "$file" ]; then install -D -m 644 "$file" "$root$file"; fi
@@ -50,7 +54,7 @@ grep -E '^(root|nogroup|heliograph):' /etc/group >"$root/etc/group"
 install -m 755 "$(command -v busybox)" "$root/usr/bin/busybox"
 "$(dirname "$0")/sbom.sh" heliograph-image \
   "$(dpkg-query --show --showformat '${Version}' heliograph)" \
-  "${programs[@]}" "$(command -v busybox)" >"$root/usr/share/doc/heliograph/image.spdx.json"
+  "${programs[@]}" "$font" "$(command -v busybox)" >"$root/usr/share/doc/heliograph/image.spdx.json"
 # The commands that probes, hooks and operators call. Others are available as "busybox NAME".
 for name in cat cp find grep id ls nc rm sh sleep timeout; do
   ln -s busybox "$root/usr/bin/$name"

@@ -32,7 +32,7 @@ packages_of() {
     sed -n 's/^\([^ ,]*\).*: \/.*/\1/p' | sort -u
 }
 
-linked=$({ printf '%s\n' "$@"; ldd "$@" 2>/dev/null |
+linked=$({ printf '%s\n' "$@"; { ldd "$@" 2>/dev/null || true; } |
   awk '$2 == "=>" { print $3 } $1 ~ /^\/lib.*ld-/ { print $1 }'; } | sort -u |
   xargs -d '\n' readlink -f | packages_of)
 compiled=

@@ -207,6 +207,7 @@ struct FrameCapture {
   std::string buffer = "output";
   ImageFormat format = ImageFormat::png;
   std::optional<std::uint32_t> samples;
+  bool marks = false;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -221,6 +222,10 @@ struct FrameCapture {
               "accumulation; absent: as many as that, and with reference.use when_static those of "
               "the path tracer besides.")
             .range(1, max_samples_per_pixel),
+        field("marks", &FrameCapture::marks,
+              "Whether the measurements and annotations of the scene are drawn over the image: of "
+              "the buffer output only, as png, jpeg or webp.")
+            .or_default(),
     };
   }
   bool operator==(const FrameCapture&) const = default;

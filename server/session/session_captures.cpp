@@ -11,6 +11,22 @@ namespace heliograph::session {
 
 using protocol::Result;
 
+namespace {
+
+Result<void> check_marks(const CaptureRequest& request) {
+  if (request.marks == CaptureMarks::none) return {};
+  if (request.marks == CaptureMarks::drawn && !is_image_of_output(request.buffer, request.format)) {
+    return protocol::error::invalid("marks", "are possible in images of output only",
+                                    "png, jpeg or webp of the buffer output");
+  }
+  if (const auto& reason = stream::marks_unavailable()) {
+    return protocol::error::invalid("marks", "cannot be drawn: " + *reason);
+  }
+  return {};
+}
+
+}  // namespace
+
 Result<void> SessionCaptures::request_capture(CaptureRequest request) {
   const Result<void> accepted = accept(std::move(request));
   if (accepted) {
@@ -27,6 +43,7 @@ Result<void> SessionCaptures::accept(CaptureRequest request) {
   if (const auto known = render::check_buffer_name(request.buffer, "buffer"); !known) {
     return known.error();
   }
+  if (const auto possible = check_marks(request); !possible) return possible;
   if (const auto capacity = core_.captures.check_capture_capacity(); !capacity) return capacity;
   if (request.answer) {
     const std::size_t file =

@@ -11,8 +11,8 @@ class SessionCaptures {
  public:
   explicit SessionCaptures(SessionCore& core) : core_(core) {}
 
-  /// Refused at once without a scene, for an unknown buffer, where too many are pending, and where
-  /// the file would probably not fit into its answer.
+  /// Refused at once without a scene, for an unknown buffer, where marks cannot be drawn, where too
+  /// many are pending, and where the file would probably not fit into its answer.
   protocol::Result<void> request_capture(CaptureRequest request);
   protocol::Result<void> request_probe(Probe probe);
   /// Those requested since the last call.

@@ -162,6 +162,50 @@ stage.test("a converged image waits for the path traced samples, in any size", a
   await samples(2);
 });
 
+stage.test("an image is saved with measurements and annotations, if there are any", async (t) => {
+  const { page } = await stage.sharedViewer();
+  await settle(page, stage.server);
+  const refusal = await stage.server
+    .call("frame.capture", { marks: true, samples: 1 })
+    .then(() => "", (error) => String(error));
+  if (refusal.includes("cannot be drawn")) return t.skip(refusal);
+  const dialog = await openSave(page);
+  const drawn = dialog.getByRole("switch", { name: "Measurements and annotations" });
+  assert.equal(await drawn.isVisible(), false, "there are none yet");
+  const { target, up } = await stage.server.call("camera.get");
+  const end = target.map((value, axis) => value + 0.5 * up[axis]);
+  const points = [{ position: target }, { position: end }];
+  await stage.server.call("measurements.add", { kind: "distance", points });
+  await drawn.waitFor();
+  assert.equal(await drawn.isChecked(), false);
+  await drawn.check();
+  await screenshot(page, "save_marks");
+  assert.deepEqual(await seriousFindings(page), []);
+  await dialog.getByLabel("Format").selectOption("exr");
+  assert.equal(await drawn.isVisible(), false, "values have none");
+  await dialog.getByLabel("Format").selectOption("png");
+  const save = dialog.getByRole("button", { name: "Save", exact: true });
+  const marked = await downloaded(page, () => save.click());
+
+  await openSave(page);
+  assert.ok(await drawn.isChecked(), "the choice stays");
+  await enter(dialog.getByRole("textbox", { name: "Width" }), "360");
+  const small = await downloaded(page, () => save.click());
+  await openSave(page);
+  await drawn.uncheck();
+  const plain = await downloaded(page, () => save.click());
+  const [image, ...others] = await Promise.all(
+    [plain, marked, small].map(({ bytes }) => thumbnail(page, bytes)),
+  );
+  for (const other of others) assert.ok(difference(image, other) > 1e-4, "nothing is drawn");
+  assert.ok(difference(image, others[0]) < 0.2, "more than the marks is drawn");
+  await stage.server.call("measurements.clear");
+  await openSave(page);
+  await drawn.waitFor({ state: "hidden" });
+  await page.keyboard.press("Escape");
+  await dialog.waitFor({ state: "hidden" });
+});
+
 stage.test("an image is saved without its background", async () => {
   const { page } = await stage.sharedViewer();
   await settle(page, stage.server);

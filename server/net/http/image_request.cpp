@@ -51,7 +51,7 @@ Result<void> check_parameters(const HttpRequest& request, std::vector<std::strin
 Result<ImageRequest> read_image_request(const HttpRequest& request,
                                         const session::SessionLimits& limits) {
   const auto known = check_parameters(request, {"buffer", "samples", "width", "height", "camera",
-                                                "fit", "background", "transparent"});
+                                                "fit", "background", "transparent", "marks"});
   if (!known) return known.error();
   const auto samples = number_parameter(request, "samples", 1, protocol::max_samples_per_pixel);
   if (!samples) return samples.error();
@@ -66,9 +66,12 @@ Result<ImageRequest> read_image_request(const HttpRequest& request,
   if (!background) return background.error();
   const auto transparent = flag_parameter(request, "transparent");
   if (!transparent) return transparent.error();
+  const auto marks = flag_parameter(request, "marks");
+  if (!marks) return marks.error();
   ImageRequest image;
   image.capture.buffer = request.parameter("buffer").value_or("output");
   image.capture.samples = *samples;
+  if (marks->value_or(false)) image.capture.marks = session::CaptureMarks::drawn;
   image.view = {.width = *width,
                 .height = *height,
                 .camera = request.parameter("camera"),

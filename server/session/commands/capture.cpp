@@ -24,9 +24,11 @@ void capture(Session& session, const FrameCapture& request, const protocol::Call
                        .samples = capture->samples,
                        .data = stream::base64_encode(capture->file)});
   };
+  const CaptureMarks marks = request.marks ? CaptureMarks::drawn : CaptureMarks::none;
   const Result<void> accepted = session.captures().request_capture({.buffer = request.buffer,
                                                                     .format = request.format,
                                                                     .samples = request.samples,
+                                                                    .marks = marks,
                                                                     .viewer = context.viewer,
                                                                     .answer = context.answer,
                                                                     .as_base64 = true,

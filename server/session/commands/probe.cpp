@@ -121,7 +121,7 @@ void add_probe_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
          const AskedSession& asked) -> Result<protocol::HiddenAnnotations> {
         const auto session = asked.lock();
         if (!session || !state.scene) return protocol::HiddenAnnotations();
-        return hidden_annotations(renderer, state, session->annotations().list());
+        return hidden_annotations(renderer, FrameView(state), session->annotations().list());
       });
   add_probe<methods::frame_inspect>(
       dispatcher, host, true,

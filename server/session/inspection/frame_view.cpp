@@ -1,5 +1,6 @@
 #include "session/inspection/frame_view.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "scene/animation/explosion.hpp"
@@ -12,19 +13,18 @@ const scene::Clip* clip_of(const RenderState& state) {
   return scene::find_clip(*state.scene, state.animation.clip);
 }
 
-scene::Camera camera_of(const RenderState& state) {
+scene::Camera camera_of(const RenderState& state, double seconds) {
   if (!state.camera_follows) return state.camera;
-  const double seconds = state.animation.at(state.now());
   return scene::camera_at(*state.scene, state.camera,
                           scene::pose_at(*state.scene, clip_of(state), seconds));
 }
 
 }  // namespace
 
-FrameView::FrameView(const RenderState& state)
-    : pose_(scene::shown_pose(*state.scene, clip_of(state), state.animation.at(state.now()),
+FrameView::FrameView(const RenderState& state, Clock::time_point moment)
+    : pose_(scene::shown_pose(*state.scene, clip_of(state), state.animation.at(moment),
                               state.settings.view.explode)),
-      camera_(camera_of(state)),
+      camera_(camera_of(state, state.animation.at(moment))),
       forward_(glm::normalize(camera_.target - camera_.eye)),
       aspect_(static_cast<float>(state.width) / static_cast<float>(state.height)) {}
 
@@ -50,6 +50,35 @@ std::optional<glm::vec2> FrameView::image_point(const glm::vec3& point) const {
   const glm::vec2 place = 0.5f + 0.5f * glm::vec2(clip) / clip.w;
   const bool within = place.x >= 0.0f && place.y >= 0.0f && place.x <= 1.0f && place.y <= 1.0f;
   return within ? std::optional(place) : std::nullopt;
+}
+
+std::optional<std::pair<glm::vec2, glm::vec2>> FrameView::image_line(const glm::vec3& from,
+                                                                     const glm::vec3& to) const {
+  constexpr float nearest = 1e-4f;  // of the distance to the target
+  constexpr float reach = 3.0f;     // of the image's sides from its centre, halves of them
+  const glm::vec4 a = scene::view_matrix(camera_) * glm::vec4(from, 1.0f);
+  const glm::vec4 b = scene::view_matrix(camera_) * glm::vec4(to, 1.0f);
+  const glm::mat4 projection = scene::projection_matrix(camera_, aspect_);
+  const glm::vec4 clip_a = projection * a, clip_b = projection * b;
+  const float near_plane = nearest * glm::length(camera_.target - camera_.eye);
+  float begin = 0.0f, end = 1.0f;  // of the line, what remains of it
+  const auto cut = [&](float inside_a, float inside_b) {
+    if (inside_a < 0.0f && inside_b < 0.0f) end = -1.0f;
+    if (inside_a < 0.0f && inside_b >= 0.0f)
+      begin = std::max(begin, inside_a / (inside_a - inside_b));
+    if (inside_a >= 0.0f && inside_b < 0.0f) end = std::min(end, inside_a / (inside_a - inside_b));
+  };
+  cut(-a.z - near_plane, -b.z - near_plane);
+  for (int axis = 0; axis < 2; ++axis) {
+    cut(reach * clip_a.w - clip_a[axis], reach * clip_b.w - clip_b[axis]);
+    cut(reach * clip_a.w + clip_a[axis], reach * clip_b.w + clip_b[axis]);
+  }
+  if (begin > end) return std::nullopt;
+  const auto place = [&](float along) {
+    const glm::vec4 clip = glm::mix(clip_a, clip_b, along);
+    return 0.5f + 0.5f * glm::vec2(clip) / clip.w;
+  };
+  return std::pair(place(begin), place(end));
 }
 
 }  // namespace heliograph::session

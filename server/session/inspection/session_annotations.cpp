@@ -22,6 +22,11 @@ AnnotationList SessionAnnotations::list() const {
   return list_marks(core_, &SessionCore::annotations);
 }
 
+AnnotationList SessionAnnotations::list_in(const scene::Scene& scene,
+                                           const scene::Pose& pose) const {
+  return list_marks_in(core_, &SessionCore::annotations, scene, pose);
+}
+
 Result<AnnotationList> SessionAnnotations::add(const protocol::AnnotationAdd& request,
                                                const std::string& by) {
   return change_annotations(core_, by, [&](AnnotationSet& annotations, const ScenePart& part) {

@@ -13,6 +13,8 @@ class SessionAnnotations {
   explicit SessionAnnotations(SessionCore& core) : core_(core) {}
 
   protocol::AnnotationList list() const;
+  /// Where they are in a pose of the scene; empty if the session shows another scene.
+  protocol::AnnotationList list_in(const scene::Scene& scene, const scene::Pose& pose) const;
   protocol::Result<protocol::AnnotationList> add(const protocol::AnnotationAdd& request,
                                                  const std::string& by);
   protocol::Result<protocol::AnnotationList> edit(const protocol::AnnotationEdit& request,

@@ -28,6 +28,20 @@ auto list_marks(const SessionCore& core, Set SessionCore::*marks) {
                    scene::shown_pose(*scene, scene::find_clip(*scene, clip), seconds, explode));
 }
 
+/// Those of a scene that the session shows, where they are in a pose of it; empty if it shows
+/// another.
+template <class Set>
+auto list_marks_in(const SessionCore& core, Set SessionCore::*marks, const scene::Scene& scene,
+                   const scene::Pose& pose) {
+  using List = decltype((core.*marks).list(core.part(), scene, pose));
+  std::unique_lock lock(core.mutex);
+  if (core.scene.get() != &scene) return List();
+  const Set copy = core.*marks;  // shares its entries
+  const ScenePart part = core.part();
+  lock.unlock();
+  return copy.list(part, scene, pose);
+}
+
 /// Changes them by `change(marks, part)`, under the lock, and tells viewers but `by`.
 /// @return their list
 template <class Notification, class Set, class Change>

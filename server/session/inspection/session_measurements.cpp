@@ -22,6 +22,11 @@ MeasurementList SessionMeasurements::list() const {
   return list_marks(core_, &SessionCore::measured);
 }
 
+MeasurementList SessionMeasurements::list_in(const scene::Scene& scene,
+                                             const scene::Pose& pose) const {
+  return list_marks_in(core_, &SessionCore::measured, scene, pose);
+}
+
 Result<MeasurementList> SessionMeasurements::add(const protocol::MeasurementAdd& request,
                                                  const std::string& by) {
   return change_measurements(core_, by, [&](MeasurementSet& measured, const ScenePart& part) {

@@ -13,6 +13,8 @@ class SessionMeasurements {
   explicit SessionMeasurements(SessionCore& core) : core_(core) {}
 
   protocol::MeasurementList list() const;
+  /// Where they are in a pose of the scene; empty if the session shows another scene.
+  protocol::MeasurementList list_in(const scene::Scene& scene, const scene::Pose& pose) const;
   protocol::Result<protocol::MeasurementList> add(const protocol::MeasurementAdd& request,
                                                   const std::string& by);
   protocol::Result<protocol::MeasurementList> remove(const protocol::MeasurementId& request,

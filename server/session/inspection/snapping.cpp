@@ -2,7 +2,6 @@
 
 #include "scene/surface/surface_snap.hpp"
 #include "session/inspection/anchors.hpp"
-#include "session/inspection/frame_view.hpp"
 #include "session/library/scene_description.hpp"
 
 namespace heliograph::session {
@@ -35,10 +34,9 @@ protocol::SnapResult snap(const RenderState& state, const render::SurfacePoint& 
 }
 
 protocol::Result<protocol::HiddenAnnotations> hidden_annotations(
-    const render::Renderer& renderer, const RenderState& state,
+    const render::Renderer& renderer, const FrameView& view,
     const protocol::AnnotationList& annotations) {
   constexpr float tolerance = 0.005f;  // of the distance
-  const FrameView view(state);
   protocol::HiddenAnnotations result;
   for (const protocol::Annotation& annotation : annotations.annotations) {
     const glm::vec3 position = from_protocol(annotation.position);

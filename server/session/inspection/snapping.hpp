@@ -3,6 +3,7 @@
 #include "protocol/messages/annotation_messages.hpp"
 #include "protocol/result.hpp"
 #include "render/api/renderer.hpp"
+#include "session/inspection/frame_view.hpp"
 #include "session/state/render_state.hpp"
 
 // What of the scene's data the newest frame shows where. For the render thread.
@@ -15,9 +16,9 @@ namespace heliograph::session {
 protocol::SnapResult snap(const RenderState& state, const render::SurfacePoint& picked,
                           const protocol::SceneSnap& request);
 
-/// Those of the scene's annotations that the frame shows behind a surface.
+/// Those of the scene's annotations that the frame, which `view` is of, shows behind a surface.
 protocol::Result<protocol::HiddenAnnotations> hidden_annotations(
-    const render::Renderer& renderer, const RenderState& state,
+    const render::Renderer& renderer, const FrameView& view,
     const protocol::AnnotationList& annotations);
 
 }  // namespace heliograph::session

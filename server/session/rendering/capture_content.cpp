@@ -24,6 +24,10 @@ constexpr std::string_view output_buffer = "output";
 constexpr std::string_view radiance_buffer = "output.radiance";
 constexpr int lossy_quality = 90;
 
+bool is_for_viewing(ImageFormat format) {
+  return format == ImageFormat::png || format == ImageFormat::jpeg || format == ImageFormat::webp;
+}
+
 using Texel = const float*;
 
 /// One channel; `read` gives its value of a texel.
@@ -157,6 +161,10 @@ bool reads_other_buffers(std::string_view buffer, ImageFormat format) {
   return buffer != output_buffer || format == ImageFormat::exr;
 }
 
+bool is_image_of_output(std::string_view buffer, ImageFormat format) {
+  return buffer == output_buffer && is_for_viewing(format);
+}
+
 std::size_t estimated_file_bytes(std::string_view buffer, ImageFormat format, std::uint32_t width,
                                  std::uint32_t height) {
   constexpr std::size_t values = 4 * sizeof(float);  // the channels of a buffer, at most
@@ -179,9 +187,8 @@ std::size_t estimated_file_bytes(std::string_view buffer, ImageFormat format, st
 
 Result<CaptureContent> read_content(render::Renderer& renderer, std::string_view buffer,
                                     ImageFormat format) {
-  const bool as_image = format == ImageFormat::png || format == ImageFormat::jpeg ||
-                        format == ImageFormat::webp ||
-                        (format == ImageFormat::npy && buffer == output_buffer);
+  const bool as_image =
+      is_for_viewing(format) || (format == ImageFormat::npy && buffer == output_buffer);
   if (as_image) {
     auto frame = renderer.capture_view(buffer);
     if (!frame) return frame.error();

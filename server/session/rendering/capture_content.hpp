@@ -34,6 +34,9 @@ bool is_complete_at_once(std::string_view buffer);
 /// Whether read_content() reads buffers that not every frame keeps: render::Renderer::keep_buffers.
 bool reads_other_buffers(std::string_view buffer, protocol::ImageFormat format);
 
+/// Whether such a file shows the output as viewers see it: neither its values nor another buffer.
+bool is_image_of_output(std::string_view buffer, protocol::ImageFormat format);
+
 /// Bytes of such a file, before its content is known: what images are rarely above, and arrays
 /// never.
 std::size_t estimated_file_bytes(std::string_view buffer, protocol::ImageFormat format,

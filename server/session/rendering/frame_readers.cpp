@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "session/event_log.hpp"
+#include "session/inspection/frame_marks.hpp"
 #include "session/measurements.hpp"
 #include "session/rendering/capture_content.hpp"
 
@@ -26,14 +27,31 @@ bool shows_state_since(const ReadableFrame& frame, Clock::time_point moment) {
   return frame.shows_state && (!frame.state.animation.playing || frame.began >= moment);
 }
 
+/// What a capture is written from, beside the render thread.
+struct CapturedContent {
+  CaptureContent content;
+  stream::ImageMarks marks;
+  std::uint32_t samples;
+};
+
+void draw_over(CaptureContent& content, const stream::ImageMarks& marks) {
+  if (auto* const frame = std::get_if<render::Frame>(&content.values)) {
+    stream::draw_marks(frame->rgba, frame->width, frame->height, marks);
+  }
+}
+
 /// An error where there is no memory for the file: its caller waits for an answer.
-Result<Capture> encoded(const CaptureContent& content, protocol::ImageFormat format,
-                        std::uint32_t samples) {
+Result<Capture> encoded(CapturedContent& captured, const CaptureRequest& request) {
+  CaptureContent& content = captured.content;
   try {
-    return Capture{.width = content.width,
-                   .height = content.height,
-                   .samples = samples,
-                   .file = encode_content(content, format)};
+    if (request.marks == CaptureMarks::drawn) draw_over(content, captured.marks);
+    Capture capture{.width = content.width,
+                    .height = content.height,
+                    .samples = captured.samples,
+                    .file = encode_content(content, request.format),
+                    .marks = {}};
+    if (request.marks == CaptureMarks::listed) capture.marks = std::move(captured.marks);
+    return capture;
   } catch (const std::exception& failure) {
     log_error({}, std::string("a capture could not be encoded: ") + failure.what());
     return protocol::error::internal();
@@ -149,6 +167,14 @@ bool FrameReaders::is_ready(const PendingCapture& capture, const ReadableFrame& 
   return samples ? newest.samples >= *samples : is_complete_at_once(capture.request.buffer);
 }
 
+Result<stream::ImageMarks> FrameReaders::marks_of(const ReadableFrame& frame) {
+  if (!frame.state.scene) return stream::ImageMarks();
+  const scene::Scene& scene = *frame.state.scene;
+  const FrameView view(frame.state, frame.state.lockstep.value_or(frame.began));
+  return frame_marks(frame.renderer, view, session_.measurements().list_in(scene, view.pose()),
+                     session_.annotations().list_in(scene, view.pose()));
+}
+
 /// False if too many files are being written already.
 bool FrameReaders::write(CaptureRequest& request, const ReadableFrame& frame) {
   if (!capture_writer_.has_room()) return false;
@@ -157,10 +183,18 @@ bool FrameReaders::write(CaptureRequest& request, const ReadableFrame& frame) {
     request.done(content.error());
     return true;
   }
-  capture_writer_.post([request = std::move(request), samples = frame.newest->frame.samples,
-                        content = std::make_shared<CaptureContent>(*std::move(content)),
-                        &written = written_] {
-    request.done(encoded(*content, request.format, samples));
+  const auto captured = std::make_shared<CapturedContent>(CapturedContent{
+      .content = *std::move(content), .marks = {}, .samples = frame.newest->frame.samples});
+  if (request.marks != CaptureMarks::none) {
+    auto marks = marks_of(frame);
+    if (!marks) {
+      request.done(marks.error());
+      return true;
+    }
+    captured->marks = *std::move(marks);
+  }
+  capture_writer_.post([request = std::move(request), captured, &written = written_] {
+    request.done(encoded(*captured, request));
     written.notify();
   });
   return true;

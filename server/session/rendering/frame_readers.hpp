@@ -68,6 +68,8 @@ class FrameReaders {
   void fail_captures_of_departed();
   bool is_ready(const PendingCapture& capture, const ReadableFrame& frame) const;
   bool comes_after_steps(const ReadableFrame& frame, std::optional<Ticket> ticket) const;
+  /// Where this frame shows them.
+  protocol::Result<stream::ImageMarks> marks_of(const ReadableFrame& frame);
   bool write(CaptureRequest& request, const ReadableFrame& frame);
 
   Session& session_;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstring>
+#include <exception>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -13,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "session/event_log.hpp"
 #include "session/rendering/transparency.hpp"
 #include "stream/encoders/png_encoder.hpp"
 
@@ -52,10 +54,10 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> size_of(const File& npy) 
   return std::pair(width, height);
 }
 
-/// A PNG file of the colors over black (bytes) and the radiance over white and over black (floats).
-/// Nothing where their sizes differ.
+/// A PNG file of the colors over black (bytes) and the radiance over white and over black (floats),
+/// with marks drawn over it. Nothing where their sizes differ.
 std::optional<File> combine_transparent(const File& colors, const File& over_white,
-                                        const File& over_black) {
+                                        const File& over_black, const stream::ImageMarks& marks) {
   const auto size = size_of(colors);
   if (!size || size_of(over_white) != size || size_of(over_black) != size) return std::nullopt;
   const std::size_t pixels = std::size_t{size->first} * size->second;
@@ -71,6 +73,7 @@ std::optional<File> combine_transparent(const File& colors, const File& over_whi
                 rgba.begin() + static_cast<std::ptrdiff_t>(4 * i));
   }
   put_background(rgba, coverage_of(white, black), std::nullopt);
+  stream::draw_marks(rgba, size->first, size->second, marks, stream::Alpha::kept);
   return stream::encode_png({.width = size->first, .height = size->second, .rgba = rgba},
                             stream::Alpha::kept);
 }
@@ -98,6 +101,7 @@ class TransparentCapture : public std::enable_shared_from_this<TransparentCaptur
     settings["environment"]["visible"] = false;
     settings["view"]["buffer"] = "output";
     CaptureRequest request{.format = protocol::ImageFormat::npy, .samples = request_.samples};
+    if (request_.marks != CaptureMarks::none) request.marks = CaptureMarks::listed;
     return capture(settings, std::move(request), colors_);
   }
 
@@ -116,7 +120,7 @@ class TransparentCapture : public std::enable_shared_from_this<TransparentCaptur
   void go_on(Capture newest) {
     Result<void> accepted;
     if (!colors_.empty()) {
-      auto file = combine_transparent(colors_, over_white_, over_black_);
+      auto file = combined(newest.marks);
       if (!file) return request_.done(protocol::error::internal());
       newest.file = *std::move(file);
       return request_.done(std::move(newest));
@@ -124,6 +128,17 @@ class TransparentCapture : public std::enable_shared_from_this<TransparentCaptur
     accepted = over_black_.empty() ? capture_coverage(CoverageBackground::black, over_black_)
                                    : capture_colors();
     if (!accepted) request_.done(accepted.error());
+  }
+
+  /// Nothing where it fails: the caller waits for an answer.
+  std::optional<File> combined(const stream::ImageMarks& marks) const {
+    try {
+      return combine_transparent(colors_, over_white_, over_black_, marks);
+    } catch (const std::exception& failure) {
+      log_error({.session = copy_->name()},
+                std::string("a transparent image could not be made: ") + failure.what());
+      return std::nullopt;
+    }
   }
 
   const std::shared_ptr<Session> copy_;

@@ -1,4 +1,4 @@
-// The dialog that saves the view as an image: format, samples, progress, cancelling.
+// The dialog that saves the view as an image: format, samples, what it shows, progress, cancelling.
 
 import { saveFile, captureBlob } from "../common/image_files.ts";
 import {
@@ -50,6 +50,14 @@ export function createSaveDialog(
     name: "transparent",
   });
   const background = field("Transparent", transparent);
+  // The dialog stays in the page, and so does the choice.
+  const marks = element("input", {
+    type: "checkbox",
+    role: "switch",
+    class: "switch",
+    name: "marks",
+  });
+  const drawnMarks = field("Measurements and annotations", marks);
   const bar = element("div", { class: "bar" });
   const progress = element(
     "div",
@@ -66,6 +74,7 @@ export function createSaveDialog(
     field("Samples", samples),
     size.node,
     background,
+    drawnMarks,
     progress,
     status,
     element("footer", {}, cancel, save),
@@ -122,6 +131,12 @@ export function createSaveDialog(
   /** Images without background are rendered without path traced samples. */
   const withoutReference = (): boolean => transparent.checked && !background.hidden;
 
+  const hasMarks = (): boolean => {
+    const { measurements, annotations } = viewer.marks;
+    return measurements.list.value.length + annotations.list.value.length > 0;
+  };
+  const withMarks = (): boolean => marks.checked && !drawnMarks.hidden;
+
   const update = (): void => {
     if (viewer.frame.value?.final) whenFinal?.();
     if (!dialog.open) return;
@@ -129,6 +144,8 @@ export function createSaveDialog(
       const possible = viewer.mayCreateSessions && format.value === "png" && showsOutput();
       transparent.disabled = !possible;
       background.hidden = !possible;
+      drawnMarks.hidden = !hasMarks() || format.value === "exr" || !showsOutput();
+      marks.disabled = drawnMarks.hidden;
       setOptions(samples, sampleOptions());
       return;
     }
@@ -147,10 +164,12 @@ export function createSaveDialog(
   };
   viewer.frame.watch(update);
   viewer.stats.watch(update);
+  viewer.marks.measurements.list.watch(update);
+  viewer.marks.annotations.list.watch(update);
 
   const setSaving = (saving: boolean): void => {
     isSaving = saving;
-    format.disabled = samples.disabled = transparent.disabled = save.disabled = saving;
+    for (const control of [format, samples, transparent, marks, save]) control.disabled = saving;
     size.enable(!saving && viewer.mayCreateSessions);
     progress.hidden = !saving;
     progress.classList.toggle("indeterminate", saving && withoutBackground);
@@ -164,11 +183,17 @@ export function createSaveDialog(
     const { width, height } = size.value();
     if (!withoutBackground && hasViewSize()) {
       if (wanted === "final") await finalFrame();
-      const capture = await viewer.queries.capture(undefined, chosen, leastSamples(wanted));
+      const capture = await viewer.queries.capture(
+        undefined,
+        chosen,
+        leastSamples(wanted),
+        withMarks(),
+      );
       return { ...capture, file: captureBlob(capture) };
     }
     const buffer = shownBuffer();
-    const request = { width, height, buffer, extension: extensionOf(chosen), wanted };
+    const extension = extensionOf(chosen);
+    const request = { width, height, buffer, extension, wanted, marks: withMarks() };
     sized = new AbortController();
     sizedSamples = 0;
     update();

@@ -18,6 +18,8 @@ interface SizedCapture {
   /** As in the address of a frame. */
   extension: "png" | "jpg" | "exr";
   wanted: Wanted;
+  /** Whether measurements and annotations are drawn over it. */
+  marks: boolean;
 }
 
 /**
@@ -41,7 +43,7 @@ interface SizedImage {
  */
 export async function captureInSize(
   viewer: Viewer,
-  { width, height, buffer, extension, wanted }: SizedCapture,
+  { width, height, buffer, extension, wanted, marks }: SizedCapture,
   signal: AbortSignal,
   progress: (samples: number) => void,
 ): Promise<SizedImage> {
@@ -54,6 +56,7 @@ export async function captureInSize(
     if (wanted === "final") await Promise.race([copy.final, aborted(signal)]);
     const url = viewer.connection.address.url(`api/v1/sessions/${name}/frame.${extension}`);
     url.searchParams.set("buffer", buffer);
+    if (marks) url.searchParams.set("marks", "1");
     return await download(url, wanted, signal);
   } finally {
     // If this fails, the session ends by its idle timeout.
@@ -69,13 +72,14 @@ export async function captureInSize(
  */
 export async function captureWithoutBackground(
   viewer: Viewer,
-  { width, height, wanted }: SizedCapture,
+  { width, height, wanted, marks }: SizedCapture,
   signal: AbortSignal,
 ): Promise<SizedImage> {
   const session = viewer.membership.name;
   const url = viewer.connection.address.url(`api/v1/sessions/${session}/frame.png`);
   const parameters = { transparent: "1", width: String(width), height: String(height) };
   for (const [name, value] of Object.entries(parameters)) url.searchParams.set(name, value);
+  if (marks) url.searchParams.set("marks", "1");
   return download(url, wanted, signal);
 }
 

@@ -67,13 +67,19 @@ export class FrameQueries {
     return this.host.rpc.request("frame.inspect", this.host.inFrame(x, y));
   }
 
-  /** A buffer as a file; by default the one that is shown, converged. */
+  /**
+   * A buffer as a file; by default the one that is shown, converged. `marks`: with measurements and
+   * annotations drawn over it, which only images of the output can have.
+   */
   async capture(
     buffer = this.host.buffer(),
     format: FrameCaptureParams["format"] = "png",
     samples?: number,
+    marks = false,
   ): Promise<Capture> {
-    const params = samples === undefined ? { buffer, format } : { buffer, format, samples };
+    const params: FrameCaptureParams = { buffer, format };
+    if (samples !== undefined) params.samples = samples;
+    if (marks) params.marks = true;
     return this.host.rpc.request("frame.capture", params, captureTimeoutMs);
   }
 
