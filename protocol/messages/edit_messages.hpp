@@ -8,6 +8,7 @@
 #include "protocol/json/fields.hpp"
 #include "protocol/limits.hpp"
 #include "protocol/messages/kinds.hpp"
+#include "protocol/messages/material_messages.hpp"
 #include "protocol/messages/scene_messages.hpp"
 #include "protocol/messages/section_messages.hpp"
 

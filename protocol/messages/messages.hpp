@@ -10,6 +10,7 @@
 #include "protocol/messages/frame_messages.hpp"
 #include "protocol/messages/job_messages.hpp"
 #include "protocol/messages/loading_messages.hpp"
+#include "protocol/messages/material_messages.hpp"
 #include "protocol/messages/measurement_messages.hpp"
 #include "protocol/messages/membership_messages.hpp"
 #include "protocol/messages/node_messages.hpp"

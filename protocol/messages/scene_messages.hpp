@@ -10,8 +10,8 @@
 #include "protocol/messages/kinds.hpp"
 #include "protocol/messages/session_messages.hpp"
 
-// Messages about the content of a scene: lights, materials, environment, and the surface or buffer
-// values at a point of the image. Edits belong to one session.
+// Messages about the content of a scene: lights, environment, and the surface or buffer values at a
+// point of the image. Edits belong to one session.
 
 namespace heliograph::protocol {
 
@@ -180,118 +180,6 @@ struct LightsChanged {
     };
   }
   bool operator==(const LightsChanged&) const = default;
-};
-
-struct MaterialInfo {
-  std::string name;
-  Vec3 base_color{};
-  float roughness = 0.0f;
-  float metallic = 0.0f;
-  Vec3 emissive{};
-  float normal_scale = 1.0f;
-  float occlusion_strength = 1.0f;
-  std::vector<std::string> textures;
-  std::vector<std::string> changed;
-
-  static constexpr auto fields() {
-    return std::tuple{
-        field("name", &MaterialInfo::name, "Unique name for materials.patch."),
-        field("base_color", &MaterialInfo::base_color, "Linear factor on the texture, if any."),
-        field("roughness", &MaterialInfo::roughness,
-              "Perceptual roughness, factor on the texture, if any."),
-        field("metallic", &MaterialInfo::metallic, "Metalness, factor on the texture, if any."),
-        field("emissive", &MaterialInfo::emissive,
-              "Linear emitted radiance, factor on the texture, if any."),
-        field("normal_scale", &MaterialInfo::normal_scale, "Scale of the normal texture."),
-        field("occlusion_strength", &MaterialInfo::occlusion_strength,
-              "Strength of the occlusion texture."),
-        field("textures", &MaterialInfo::textures, "Members that have a texture."),
-        field("changed", &MaterialInfo::changed, "Members that differ from the scene file."),
-    };
-  }
-  bool operator==(const MaterialInfo&) const = default;
-};
-
-struct MaterialList {
-  std::vector<MaterialInfo> materials;
-  std::uint32_t rev = 0;
-
-  static constexpr auto fields() {
-    return std::tuple{
-        field("materials", &MaterialList::materials,
-              "The materials of the scene with the session's edits."),
-        field("rev", &MaterialList::rev, "Revision of the session's state."),
-    };
-  }
-  bool operator==(const MaterialList&) const = default;
-};
-
-struct MaterialPatch {
-  static constexpr bool strict = true;
-  Change<Vec3> base_color;
-  Change<float> roughness;
-  Change<float> metallic;
-  Change<Vec3> emissive;
-  Change<float> normal_scale;
-  Change<float> occlusion_strength;
-
-  static constexpr auto fields() {
-    return std::tuple{
-        field("base_color", &MaterialPatch::base_color, "Linear factor.").range(0, 1),
-        field("roughness", &MaterialPatch::roughness, "Perceptual roughness.").range(0, 1),
-        field("metallic", &MaterialPatch::metallic, "Metalness.").range(0, 1),
-        field("emissive", &MaterialPatch::emissive, "Linear emitted radiance.").range(0, 1e6),
-        field("normal_scale", &MaterialPatch::normal_scale, "Scale of the normal texture.")
-            .range(0, 16),
-        field("occlusion_strength", &MaterialPatch::occlusion_strength,
-              "Strength of the occlusion texture.")
-            .range(0, 1),
-    };
-  }
-  bool operator==(const MaterialPatch&) const = default;
-};
-
-struct MaterialsPatch {
-  std::string material;
-  MaterialPatch patch;
-
-  static constexpr auto fields() {
-    return std::tuple{
-        field("material", &MaterialsPatch::material, "A name from materials.list.")
-            .length(1, max_node_name),
-        field("patch", &MaterialsPatch::patch,
-              "A merge patch (RFC 7386); null restores the value of the scene file."),
-    };
-  }
-  bool operator==(const MaterialsPatch&) const = default;
-};
-
-struct MaterialState {
-  MaterialInfo material;
-  std::uint32_t rev = 0;
-
-  static constexpr auto fields() {
-    return std::tuple{
-        field("material", &MaterialState::material, "The material after the change."),
-        field("rev", &MaterialState::rev, "Revision of the session's state."),
-    };
-  }
-  bool operator==(const MaterialState&) const = default;
-};
-
-struct MaterialsChanged {
-  MaterialInfo material;
-  std::uint32_t rev = 0;
-  std::string by;
-
-  static constexpr auto fields() {
-    return std::tuple{
-        field("material", &MaterialsChanged::material, "The material after the change."),
-        field("rev", &MaterialsChanged::rev, "Revision of the session's state."),
-        field("by", &MaterialsChanged::by, "The viewer that changed it; empty: the server."),
-    };
-  }
-  bool operator==(const MaterialsChanged&) const = default;
 };
 
 struct EnvironmentFile {

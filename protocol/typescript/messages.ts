@@ -302,10 +302,22 @@ export interface EditDocumentLights {
 }
 
 export interface MaterialPatch {
+  /** Linear colour of white light after the attenuation distance. */
+  attenuation_color?: Vector3 | null;
+  /** Distance after which light has the attenuation colour; 0: infinite. [metres] */
+  attenuation_distance?: number | null;
   /** Linear factor. */
   base_color?: Vector3 | null;
+  /** Fraction under a clear coat. */
+  clearcoat?: number | null;
+  /** Scale of the clear coat's normal texture. */
+  clearcoat_normal_scale?: number | null;
+  /** Perceptual roughness of the clear coat. */
+  clearcoat_roughness?: number | null;
   /** Linear emitted radiance. */
   emissive?: Vector3 | null;
+  /** Index of refraction: 1 and more, or 0: all light is reflected. */
+  ior?: number | null;
   /** Metalness. */
   metallic?: number | null;
   /** Scale of the normal texture. */
@@ -314,6 +326,18 @@ export interface MaterialPatch {
   occlusion_strength?: number | null;
   /** Perceptual roughness. */
   roughness?: number | null;
+  /** Linear colour of the sheen. */
+  sheen_color?: Vector3 | null;
+  /** Perceptual roughness of the sheen. */
+  sheen_roughness?: number | null;
+  /** Strength of the dielectric reflection. */
+  specular?: number | null;
+  /** Linear colour of the dielectric reflection. */
+  specular_color?: Vector3 | null;
+  /** Thickness; 0: thin walled. [metres] */
+  thickness?: number | null;
+  /** Fraction of light that passes, of materials whose file lets light through. */
+  transmission?: number | null;
 }
 
 export interface EditDocumentMaterials {
@@ -736,6 +760,11 @@ export interface FrameCaptureParams {
   /** Format of the file: png and jpeg for viewing, npy and exr for values. */
   format?: "png" | "jpeg" | "webp" | "npy" | "exr";
   /**
+   * Whether the measurements and annotations of the scene are drawn over the image: of the buffer
+   * output only, as png, jpeg or webp.
+   */
+  marks?: boolean;
+  /**
    * Samples per pixel to wait for, at most accumulation.max_samples, 1 without accumulation;
    * absent: as many as that, and with reference.use when_static those of the path tracer besides.
    */
@@ -866,12 +895,26 @@ export interface LightsRemoveParams {
 }
 
 export interface MaterialInfo {
+  /** Opacity below which there is a hole, of materials with an alpha mask. */
+  alpha_cutoff?: number;
+  /** Linear colour of white light after the attenuation distance. */
+  attenuation_color?: Vector3;
+  /** Distance after which light has the attenuation colour; 0: infinite. [metres] */
+  attenuation_distance?: number;
   /** Linear factor on the texture, if any. */
   base_color: Vector3;
   /** Members that differ from the scene file. */
   changed: string[];
+  /** Fraction under a clear coat, factor on the texture, if any. */
+  clearcoat?: number;
+  /** Scale of the clear coat's normal texture. */
+  clearcoat_normal_scale?: number;
+  /** Perceptual roughness of the clear coat, factor on the texture, if any. */
+  clearcoat_roughness?: number;
   /** Linear emitted radiance, factor on the texture, if any. */
   emissive: Vector3;
+  /** Index of refraction; 0: it reflects all light. */
+  ior?: number;
   /** Metalness, factor on the texture, if any. */
   metallic: number;
   /** Unique name for materials.patch. */
@@ -882,8 +925,20 @@ export interface MaterialInfo {
   occlusion_strength: number;
   /** Perceptual roughness, factor on the texture, if any. */
   roughness: number;
+  /** Linear colour of the sheen, factor on the texture, if any; black: none. */
+  sheen_color?: Vector3;
+  /** Perceptual roughness of the sheen, factor on the texture, if any. */
+  sheen_roughness?: number;
+  /** Strength of the dielectric reflection, factor on the texture, if any. */
+  specular?: number;
+  /** Linear colour of the dielectric reflection, factor on the texture, if any. */
+  specular_color?: Vector3;
   /** Members that have a texture. */
   textures: string[];
+  /** Thickness below the surface, factor on the texture, if any; 0: thin walled. [metres] */
+  thickness?: number;
+  /** Fraction of light that passes, factor on the texture, if any. */
+  transmission?: number;
 }
 
 /** Result of materials.list. */

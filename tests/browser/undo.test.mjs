@@ -67,6 +67,11 @@ stage.test("settings, lights, materials and the environment are undone by name",
     (await call("materials.list")).materials.find((one) => one.name === material.name).metallic;
   await undoAndRedo(page, `metallic of ${material.name}`, metallic, material.metallic, 0.25);
 
+  await type(materials.getByRole("textbox", { name: "Clear coat" }), 0.5);
+  const clearcoat = async () =>
+    (await call("materials.list")).materials.find((one) => one.name === material.name).clearcoat;
+  await undoAndRedo(page, `clearcoat of ${material.name}`, clearcoat, material.clearcoat, 0.5);
+
   await page.locator("select[name=environment]").selectOption("white");
   const environment = async () => (await call("environment.list")).current;
   await undoAndRedo(page, "environment", environment, null, "white");

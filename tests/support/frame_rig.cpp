@@ -45,8 +45,7 @@ FrameRig::FrameRig(std::shared_ptr<const scene::Scene> scene, const scene::Camer
   plan_.share_set(render::frame_set, frame_set_);
   plan_.share_set(render::frame_set, half_frame_set_, 2);
   render::write_scene_set(parts_.device, scene_set_, moving_.tables(),
-                          moving_.resources().texture_heap, moving_.resources().layers,
-                          moving_.emissive());
+                          moving_.resources().texture_heap, moving_.layers(), moving_.emissive());
   plan_.share_set(render::scene_set, scene_set_);
   set_view(camera);
 }

@@ -36,10 +36,13 @@ class AsyncClient(Methods):
         self.info = await self.hello(client=name)
         await self._connection.frames.pause()
 
-    async def capture(self, buffer="output", *, format="png", samples=None):
+    async def capture(self, buffer="output", *, format="png", samples=None, marks=False):
         """One buffer as a file. Waits for this many samples per pixel, at most the setting
-        accumulation.max_samples, which is also the default."""
+        accumulation.max_samples, which is also the default. `marks`: with the scene's measurements
+        and annotations drawn over the image."""
         params = {"buffer": buffer, "format": format}
+        if marks:
+            params["marks"] = True
         if samples is not None:
             params["samples"] = samples
         return Capture.from_result(await self._call("frame.capture", params))
@@ -120,9 +123,9 @@ class Client(Methods):
         """The result of hello."""
         return self._client.info
 
-    def capture(self, buffer="output", *, format="png", samples=None):
+    def capture(self, buffer="output", *, format="png", samples=None, marks=False):
         """See AsyncClient.capture."""
-        return self._run(self._client.capture(buffer, format=format, samples=samples))
+        return self._run(self._client.capture(buffer, format=format, samples=samples, marks=marks))
 
     def array(self, buffer="output", *, samples=None):
         """See AsyncClient.array."""

@@ -303,11 +303,14 @@ class Frame(_Group):
             *,
             buffer: str = _UNSET,
             format: Literal["png", "jpeg", "webp", "npy", "exr"] = _UNSET,
+            marks: bool = _UNSET,
             samples: int = _UNSET) -> Dict[str, Any]:
         """Renders one buffer and returns it as an image file.
 
         buffer: A name from frame.buffers.
         format: Format of the file: png and jpeg for viewing, npy and exr for values.
+        marks: Whether the measurements and annotations of the scene are drawn over the image:
+            of the buffer output only, as png, jpeg or webp.
         samples: Samples per pixel to wait for, at most accumulation.max_samples, 1 without
             accumulation; absent: as many as that, and with reference.use when_static those of
             the path tracer besides.
@@ -315,7 +318,7 @@ class Frame(_Group):
         Returns: buffer, data, format, height, samples, width.
         """
         return self._call("frame.capture", _given({
-            "buffer": buffer, "format": format, "samples": samples}))
+            "buffer": buffer, "format": format, "marks": marks, "samples": samples}))
 
     def step(self, *, dt: float, frames: int = _UNSET) -> Dict[str, Any]:
         """Renders exactly `frames` frames, `dt` seconds apart, and returns when they are

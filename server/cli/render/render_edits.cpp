@@ -69,7 +69,11 @@ RenderEdits::RenderEdits(const std::shared_ptr<const scene::Scene>& scene,
 
 void RenderEdits::apply(render::Renderer& renderer) const {
   if (edits_.device_lights()) renderer.set_lights(*edits_.device_lights());
-  if (edits_.device_materials()) renderer.set_materials(*edits_.device_materials());
+  if (const auto& layers = edits_.device_layers()) {
+    renderer.set_materials(*edits_.device_materials(), *layers);
+  } else if (edits_.device_materials()) {
+    renderer.set_materials(*edits_.device_materials());
+  }
   if (!hidden_.empty()) renderer.set_hidden(hidden_);
   if (section_.enabled()) renderer.set_section(*section_.enabled());
 }

@@ -34,10 +34,13 @@ class Renderer {
   void set_scene(std::shared_ptr<const SceneResources> scene);
   /// Other lights, in the default pose, and other values of materials than those of the scene's
   /// file, for this renderer alone. Lights: those of the scene, of the same kinds, then any others,
-  /// which no clip moves. Materials: as many as the scene has, with the same textures and alpha.
-  /// set_scene brings back the file's. Lights that only move keep the histories.
+  /// which no clip moves. Materials: as many as the scene has, with the same textures and alpha;
+  /// Material::layer counts `layers`, of which the first adds nothing; none: the scene's. Rays that
+  /// pass transmissive surfaces go by the file's. set_scene brings back the file's. Lights that
+  /// only move keep the histories.
   void set_lights(std::span<const shared::Light> lights);
-  void set_materials(std::span<const shared::Material> materials);
+  void set_materials(std::span<const shared::Material> materials,
+                     std::span<const shared::MaterialLayer> layers = {});
   /// Another environment than the scene's own; null: its own again.
   void set_environment(std::shared_ptr<const LitEnvironment> environment);
   /// Leaves out the instances for which `hidden` is true, one for each of the scene's; empty: none.

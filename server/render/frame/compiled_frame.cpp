@@ -50,7 +50,7 @@ void CompiledFrame::share_sets(const Engine::Parts& parts,
   share(constants_buffers.half, 2);
   const VkDescriptorSet tables = pool.allocate(parts.programs.scene_layout.handle());
   write_scene_set(parts.device, tables, inputs.tables, inputs.scene.texture_heap,
-                  inputs.scene.layers, inputs.moving.emissive());
+                  inputs.moving.layers(), inputs.moving.emissive());
   plan.share_set(scene_set, tables);
 }
 

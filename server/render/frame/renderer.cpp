@@ -60,8 +60,9 @@ void Renderer::set_lights(std::span<const shared::Light> lights) {
   }
 }
 
-void Renderer::set_materials(std::span<const shared::Material> materials) {
-  if (state_->moving->set_materials(materials)) {
+void Renderer::set_materials(std::span<const shared::Material> materials,
+                             std::span<const shared::MaterialLayer> layers) {
+  if (state_->moving->set_materials(materials, layers)) {
     state_->discard_frame_plan();
   } else {
     state_->has_previous = false;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstring>
 #include <future>
 #include <map>
 #include <stop_token>
@@ -106,40 +105,6 @@ gpu::Image constant_texture(const gpu::Device& device, const char* name,
   return image;
 }
 
-VkDeviceSize aligned(VkDeviceSize size, VkDeviceSize alignment) {
-  return (size + alignment - 1) / alignment * alignment;
-}
-
-/// Uniform blocks, `stride` bytes apart.
-template <typename Element>
-gpu::Buffer make_blocks(const gpu::Device& device, std::span<const Element> elements,
-                        VkDeviceSize stride, gpu::Memory memory) {
-  std::vector<std::byte> blocks(stride * elements.size());
-  for (std::size_t i = 0; i < elements.size(); ++i) {
-    std::memcpy(blocks.data() + i * stride, &elements[i], sizeof(Element));
-  }
-  constexpr auto usage = VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
-  if (memory != gpu::Memory::upload) {
-    return gpu::upload_buffer(device, "material blocks", blocks, usage);
-  }
-  gpu::Buffer buffer(device, "material blocks", blocks.size(), usage, memory);
-  std::memcpy(buffer.mapped(), blocks.data(), blocks.size());
-  return buffer;
-}
-
-/// In the order of the shader's bindings.
-std::array<const shared::TextureSlot*, material_textures> slots_of(const shared::Material& m) {
-  return {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
-          &m.occlusion_texture, &m.emissive_texture};
-}
-
-std::array<const shared::TextureSlot*, shared::layer_textures> slots_of(
-    const shared::MaterialLayer& l) {
-  return {&l.specular_texture,        &l.specular_color_texture, &l.coat_texture,
-          &l.coat_roughness_texture,  &l.coat_normal_texture,    &l.sheen_color_texture,
-          &l.sheen_roughness_texture, &l.transmission_texture,   &l.thickness_texture};
-}
-
 gpu::Image make_texture(const gpu::Device& device, const scene::Image& from,
                         std::span<const std::uint8_t> pixels) {
   gpu::ImageDesc desc{.name = from.name.empty() ? "texture" : from.name};
@@ -195,7 +160,7 @@ SceneResources::SceneResources(const gpu::Device& device, const Programs& progra
   upload_textures(progress, image_done);
   upload_emissive_triangles();
   if (device.is_cpu()) {
-    host_materials = make_host_materials(scene->materials);
+    host_materials = make_host_materials({scene->materials, scene->layers});
   } else {
     material_sets();
   }
@@ -315,17 +280,11 @@ void SceneResources::make_samplers() {
   samplers_.emplace_back(device_, sampler_info({}));  // for slots without a texture
 }
 
-kernels::MaterialTable SceneResources::make_host_materials(
-    std::span<const shared::Material> materials) const {
+kernels::MaterialTable SceneResources::make_host_materials(const MaterialTables& tables) const {
   const auto* const textures =
       reinterpret_cast<const shared::HeapTexture*>(texture_heap.textures.mapped());
-  return kernels::make_material_table(materials, scene->layers, {textures, scene->textures.size()});
-}
-
-void MaterialSets::write(std::span<const shared::Material> materials) const {
-  for (std::size_t i = 0; i < materials.size(); ++i) {
-    std::memcpy(blocks.mapped() + i * stride, &materials[i], sizeof(shared::Material));
-  }
+  return kernels::make_material_table(tables.materials, tables.layers,
+                                      {textures, scene->textures.size()});
 }
 
 const MaterialSets& SceneResources::material_sets() const {
@@ -333,61 +292,12 @@ const MaterialSets& SceneResources::material_sets() const {
     const std::lock_guard lock(sampled_mutex_);
     if (material_sets_) return *material_sets_;
   }
-  MaterialSets made = make_material_sets(scene->materials, gpu::Memory::device);
+  MaterialSets made =
+      make_material_sets({scene->materials, scene->layers}, (features & shared::scene_layers) != 0,
+                         gpu::Memory::device);
   const std::lock_guard lock(sampled_mutex_);
   if (!material_sets_) material_sets_ = std::move(made);
   return *material_sets_;
-}
-
-void SceneResources::write_slots(gpu::DescriptorWriter& writer, std::uint32_t first_binding,
-                                 std::span<const shared::TextureSlot* const> slots,
-                                 const shared::TextureSlot* normal) const {
-  for (std::uint32_t i = 0; i < slots.size(); ++i) {
-    const std::uint32_t texture = slots[i]->texture;
-    if (texture == shared::no_texture) {
-      const gpu::Image& constant = slots[i] == normal ? flat_normal_ : white_;
-      writer.sampled_image(first_binding + i, constant.view(), samplers_.back().handle());
-    } else {
-      writer.sampled_image(first_binding + i, images_[scene->textures[texture].image].view(),
-                           samplers_[texture_sampler_[texture]].handle());
-    }
-  }
-}
-
-MaterialSets SceneResources::make_material_sets(std::span<const shared::Material> materials,
-                                                gpu::Memory memory) const {
-  const std::lock_guard lock(sampled_mutex_);
-  make_missing_images();
-  const bool layered = (features & shared::scene_layers) != 0;
-  MaterialSets made;
-  const auto count = static_cast<std::uint32_t>(materials.size());
-  constexpr std::uint32_t most_textures = material_textures + shared::layer_textures;
-  made.pool = std::make_unique<gpu::DescriptorPool>(device_, count, count * most_textures);
-  const VkDeviceSize alignment = device_.limits().minUniformBufferOffsetAlignment;
-  made.stride = aligned(sizeof(shared::Material), alignment);
-  made.blocks = make_blocks(device_, materials, made.stride, memory);
-  const VkDeviceSize layer_stride = aligned(sizeof(shared::MaterialLayer), alignment);
-  if (layered) {
-    made.layer_blocks =
-        make_blocks(device_, std::span(scene->layers), layer_stride, gpu::Memory::device);
-  }
-  for (const shared::Material& material : materials) {
-    const VkDescriptorSet set = made.pool->allocate(programs_.material_layout(layered).handle());
-    gpu::DescriptorWriter writer(device_, set);
-    write_slots(writer, 0, slots_of(material), &material.normal_texture);
-    constexpr auto uniform = VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-    writer.buffer(material_textures, uniform, made.blocks.handle(), made.sets.size() * made.stride,
-                  sizeof(shared::Material));
-    if (layered) {
-      const shared::MaterialLayer& layer = scene->layers[material.layer];
-      write_slots(writer, material_textures + 1, slots_of(layer), &layer.coat_normal_texture);
-      writer.buffer(most_textures + 1, uniform, made.layer_blocks.handle(),
-                    material.layer * layer_stride, sizeof(shared::MaterialLayer));
-    }
-    writer.apply();
-    made.sets.push_back(set);
-  }
-  return made;
 }
 
 void SceneResources::list_draws() {

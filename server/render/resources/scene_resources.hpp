@@ -17,16 +17,25 @@
 
 namespace heliograph::render {
 
+/// Materials, and what Material::layer counts.
+struct MaterialTables {
+  std::span<const shared::Material> materials;
+  std::span<const shared::MaterialLayer> layers;
+};
+
 /// Materials as the rasteriser reads them: a uniform block and a descriptor set each.
 struct MaterialSets {
   gpu::Buffer blocks;        // shared::Material each, `stride` bytes apart
-  gpu::Buffer layer_blocks;  // shared::MaterialLayer each likewise, in scenes with layers
+  gpu::Buffer layer_blocks;  // the shared::MaterialLayer of each likewise; empty: without layers
   VkDeviceSize stride = 0;
+  VkDeviceSize layer_stride = 0;
   std::unique_ptr<gpu::DescriptorPool> pool;
   std::vector<VkDescriptorSet> sets;
+  std::vector<std::uint32_t> textures;  // of all slots, set by set
 
   /// Never while a frame runs; only where the blocks are memory that the host reaches.
-  void write(std::span<const shared::Material> materials) const;
+  /// @return whether the sets suit: nothing is written where textures differ
+  bool write(const MaterialTables& tables) const;
 };
 
 /// Called for every image whose pixels are not needed any more.
@@ -63,10 +72,11 @@ class SceneResources {
   /// What the rasteriser reads. On processors, where rays find most G-buffers, images that samplers
   /// read are made at the first call of either: they take as much memory as the heap. Thread safe.
   const MaterialSets& material_sets() const;
-  /// Other values for the scene's materials, with its textures. The host's only on processors.
-  MaterialSets make_material_sets(std::span<const shared::Material> materials,
+  /// Other values for the scene's materials, with its textures; `layered`: the sets are for shaders
+  /// of scenes with layers. The host's only on processors.
+  MaterialSets make_material_sets(const MaterialTables& tables, bool layered,
                                   gpu::Memory memory) const;
-  kernels::MaterialTable make_host_materials(std::span<const shared::Material> materials) const;
+  kernels::MaterialTable make_host_materials(const MaterialTables& tables) const;
 
  private:
   void upload_tables(const gpu::Device& device, bool host_kernels);

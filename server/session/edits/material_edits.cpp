@@ -1,72 +1,23 @@
 #include "session/edits/material_edits.hpp"
 
 #include <algorithm>
-#include <array>
 #include <string_view>
 #include <utility>
 
+#include "scene/gltf/materials/layer_table.hpp"
 #include "session/edits/edited_parts.hpp"
-#include "session/library/scene_description.hpp"
+#include "session/edits/material_form.hpp"
 
 namespace heliograph::session {
 
 using protocol::MaterialInfo;
 using protocol::Result;
 
-namespace {
-
-shared::Material device_form(const MaterialInfo& info, shared::Material material) {
-  material.base_color = glm::vec4(from_protocol(info.base_color), material.base_color.w);
-  material.roughness = info.roughness;
-  material.metallic = info.metallic;
-  material.emissive = from_protocol(info.emissive);
-  material.normal_scale = info.normal_scale;
-  material.occlusion_strength = info.occlusion_strength;
-  return material;
-}
-
-MaterialInfo describe(const shared::Material& material) {
-  MaterialInfo info{.name = {},
-                    .base_color = to_protocol(glm::vec3(material.base_color)),
-                    .roughness = material.roughness,
-                    .metallic = material.metallic,
-                    .emissive = to_protocol(material.emissive),
-                    .normal_scale = material.normal_scale,
-                    .occlusion_strength = material.occlusion_strength,
-                    .textures = {}};
-  const std::array slots{std::pair{"base_color", &material.base_color_texture},
-                         std::pair{"metallic_roughness", &material.metallic_roughness_texture},
-                         std::pair{"normal", &material.normal_texture},
-                         std::pair{"occlusion", &material.occlusion_texture},
-                         std::pair{"emissive", &material.emissive_texture}};
-  for (const auto& [name, slot] : slots) {
-    if (slot->texture != shared::no_texture) info.textures.emplace_back(name);
-  }
-  return info;
-}
-
-/// The patch that leads to `material` from that of the file.
-protocol::MaterialPatch patch_of(const MaterialInfo& material) {
-  protocol::MaterialPatch patch;
-  const auto take = [&](const char* name, auto& change, const auto& value) {
-    if (std::ranges::find(material.changed, name) != material.changed.end()) change.value = value;
-  };
-  take("base_color", patch.base_color, material.base_color);
-  take("roughness", patch.roughness, material.roughness);
-  take("metallic", patch.metallic, material.metallic);
-  take("emissive", patch.emissive, material.emissive);
-  take("normal_scale", patch.normal_scale, material.normal_scale);
-  take("occlusion_strength", patch.occlusion_strength, material.occlusion_strength);
-  return patch;
-}
-
-}  // namespace
-
 std::vector<MaterialInfo> describe_materials(const scene::Scene& scene) {
   UniqueNames names("material");
   std::vector<MaterialInfo> materials;
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
-    materials.push_back(describe(scene.materials[i]));
+    materials.push_back(describe(file_material(scene, i)));
     const bool named = i < scene.material_names.size();
     materials.back().name = names.next(named ? scene.material_names[i] : std::string());
   }
@@ -84,23 +35,34 @@ Result<MaterialInfo> MaterialEdits::patch(const protocol::MaterialsPatch& reques
     return no_such_part("material", request.material, names);
   }
   const auto index = static_cast<std::size_t>(found - materials_.begin());
-  MaterialInfo initial = describe(scene_->materials[index]);
+  const FileMaterial file = file_material(*scene_, index);
+  MaterialInfo initial = describe(file);
   initial.name = found->name;
-  const protocol::MaterialPatch& patch = request.patch;
-  MaterialInfo material = *found;
-  apply_change(patch.base_color, material.base_color, initial.base_color);
-  apply_change(patch.roughness, material.roughness, initial.roughness);
-  apply_change(patch.metallic, material.metallic, initial.metallic);
-  apply_change(patch.emissive, material.emissive, initial.emissive);
-  apply_change(patch.normal_scale, material.normal_scale, initial.normal_scale);
-  apply_change(patch.occlusion_strength, material.occlusion_strength, initial.occlusion_strength);
-  if (material == *found) return material;
+  Result<MaterialInfo> patched = session::patched(*found, initial, request.patch);
+  if (!patched || *patched == *found) return patched;
+  MaterialInfo& material = *patched;
   material.changed = differences(material, initial);
   *found = material;
   auto materials = std::make_shared<Materials>(device_ ? *device_ : scene_->materials);
-  (*materials)[index] = device_form(material, scene_->materials[index]);
+  shared::Material& device = (*materials)[index] = device_form(material, file.device);
+  if (!same_extensions(material, initial)) {
+    device.layer = own_layer(index, layer_form(material, file));
+  }
   device_ = std::move(materials);
-  return material;
+  return patched;
+}
+
+/// The number of a layer of the material of this number alone.
+std::uint32_t MaterialEdits::own_layer(std::size_t material, const shared::MaterialLayer& layer) {
+  if (scene::adds_nothing(layer)) return 0;
+  auto layers = std::make_shared<Layers>(device_layers_ ? *device_layers_ : scene_->layers);
+  if (layers->empty()) layers->push_back(scene::plain_layer());
+  const auto next = static_cast<std::uint32_t>(layers->size());
+  const std::uint32_t number = own_layers_.try_emplace(material, next).first->second;
+  if (number == next) layers->emplace_back();
+  (*layers)[number] = layer;
+  device_layers_ = std::move(layers);
+  return number;
 }
 
 void MaterialEdits::describe_edits(protocol::EditDocument& document) const {

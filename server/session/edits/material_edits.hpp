@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -15,6 +18,7 @@ namespace heliograph::session {
 class MaterialEdits {
  public:
   using Materials = std::vector<shared::Material>;
+  using Layers = std::vector<shared::MaterialLayer>;
 
   MaterialEdits() = default;
   explicit MaterialEdits(std::shared_ptr<const scene::Scene> scene);
@@ -30,11 +34,18 @@ class MaterialEdits {
   /// In the order of the scene; null until a value differs from the file. A patch makes a new list:
   /// references to the old one stay valid and unchanged.
   const std::shared_ptr<const Materials>& device() const { return device_; }
+  /// What Material::layer of device() counts: the layers of the scene, then those of materials
+  /// whose extensions were edited. Null: the scene's. A new list comes with a new device() only.
+  const std::shared_ptr<const Layers>& device_layers() const { return device_layers_; }
 
  private:
+  std::uint32_t own_layer(std::size_t material, const shared::MaterialLayer& layer);
+
   std::shared_ptr<const scene::Scene> scene_;
   std::vector<protocol::MaterialInfo> materials_;
   std::shared_ptr<const Materials> device_;
+  std::map<std::size_t, std::uint32_t> own_layers_;  // by material
+  std::shared_ptr<const Layers> device_layers_;
 };
 
 /// The materials of the file. Names are unique: a material without one gets its number.

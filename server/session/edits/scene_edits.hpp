@@ -14,6 +14,7 @@ class SceneEdits {
  public:
   using Lights = LightEdits::Lights;
   using Materials = MaterialEdits::Materials;
+  using Layers = MaterialEdits::Layers;
 
   SceneEdits() = default;
   explicit SceneEdits(const std::shared_ptr<const scene::Scene>& scene)
@@ -46,9 +47,10 @@ class SceneEdits {
 
   /// See LightEdits::changes.
   std::vector<scene::LightChange> light_changes() const { return lights_.changes(); }
-  /// See LightEdits::device and MaterialEdits::device.
+  /// See LightEdits::device, MaterialEdits::device and MaterialEdits::device_layers.
   const std::shared_ptr<const Lights>& device_lights() const { return lights_.device(); }
   const std::shared_ptr<const Materials>& device_materials() const { return materials_.device(); }
+  const std::shared_ptr<const Layers>& device_layers() const { return materials_.device_layers(); }
 
  private:
   LightEdits lights_;

@@ -2,6 +2,9 @@
 
 #include <optional>
 #include <utility>
+#include <vector>
+
+#include "session/edits/material_form.hpp"
 
 namespace heliograph::session {
 namespace {
@@ -33,13 +36,29 @@ void add_hidden(const scene::Scene& scene, const NodeState& nodes, SceneExport& 
   }
 }
 
+/// Those of materials whose extensions differ from the file.
+std::vector<std::optional<scene::MaterialLayers>> edited_extensions(const scene::Scene& scene,
+                                                                    const SceneEdits& edits) {
+  std::vector<std::optional<scene::MaterialLayers>> extensions;
+  for (const protocol::MaterialInfo& material : edits.materials()) {
+    const FileMaterial file = file_material(scene, extensions.size());
+    extensions.emplace_back();
+    if (same_extensions(material, describe(file))) continue;
+    extensions.back() = extensions_form(material, file.extensions);
+  }
+  return extensions;
+}
+
 }  // namespace
 
 SceneExport make_export(std::shared_ptr<const scene::Scene> scene, const SceneEdits& edits,
                         const NodeState& nodes, const SectionPlanes& section,
                         bool other_environment) {
   SceneExport made{.scene = std::move(scene), .changes = {}, .warnings = {}};
-  if (edits.device_materials()) made.changes.materials = *edits.device_materials();
+  if (edits.device_materials()) {
+    made.changes.materials = *edits.device_materials();
+    made.changes.extensions = edited_extensions(*made.scene, edits);
+  }
   if (edits.device_lights()) made.changes.lights = edits.light_changes();
   add_hidden(*made.scene, nodes, made);
   if (section.enabled()) made.warnings.emplace_back("section planes: glTF has none");

@@ -64,7 +64,9 @@ void SessionView::adopt_edits(const RenderState& before) {
     renderer_->set_lights(state_.lights ? *state_.lights : file_lights(*state_.scene));
   }
   if (state_.materials != (same_scene ? before.materials : nullptr)) {
-    renderer_->set_materials(state_.materials ? *state_.materials : state_.scene->materials);
+    renderer_->set_materials(
+        state_.materials ? *state_.materials : state_.scene->materials,
+        state_.layers ? std::span(*state_.layers) : std::span<const shared::MaterialLayer>());
   }
   if (state_.hidden != (same_scene ? before.hidden : nullptr)) {
     renderer_->set_hidden(state_.hidden ? *state_.hidden : std::vector<bool>());

@@ -12,6 +12,7 @@
 #include "protocol/messages/kinds.hpp"
 #include "protocol/result.hpp"
 #include "session/state/ticket.hpp"
+#include "stream/drawing/mark_drawing.hpp"
 
 namespace heliograph::render {
 class Renderer;
@@ -27,13 +28,19 @@ struct Capture {
   std::uint32_t height = 0;
   std::uint32_t samples = 0;
   std::vector<std::uint8_t> file;
+  stream::ImageMarks marks;  // if they were listed
 };
+
+/// The scene's measurements and annotations in a capture: drawn over the image, or left to the
+/// caller to draw.
+enum class CaptureMarks { none, drawn, listed };
 
 struct CaptureRequest {
   std::string buffer = "output";
   protocol::ImageFormat format = protocol::ImageFormat::png;
   /// Samples to wait for; absent: until the image has converged.
   std::optional<std::uint32_t> samples;
+  CaptureMarks marks = CaptureMarks::none;
   /// The viewer that asks; empty for a caller without a stream. Dropped when the viewer leaves.
   std::string viewer;
   /// What the file goes into; null: of any size. The capture is dropped where it is abandoned.

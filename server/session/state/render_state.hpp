@@ -30,6 +30,7 @@ struct RenderState {
   std::shared_ptr<const scene::Scene> scene;
   std::shared_ptr<const SceneEdits::Lights> lights;            // null: the scene's own
   std::shared_ptr<const SceneEdits::Materials> materials;      // null: the scene's own
+  std::shared_ptr<const SceneEdits::Layers> layers;            // of `materials`; null: the scene's
   std::shared_ptr<const std::vector<bool>> hidden;             // by instance; null: none
   std::shared_ptr<const std::vector<std::uint32_t>> selected;  // instances; null: none
   std::shared_ptr<const render::Section> section;              // null: the scene is whole

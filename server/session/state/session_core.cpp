@@ -89,6 +89,7 @@ RenderState SessionCore::snapshot() const {
           .scene = scene,
           .lights = edits.device_lights(),
           .materials = edits.device_materials(),
+          .layers = edits.device_layers(),
           .hidden = nodes.hidden_instances(),
           .selected = nodes.selected_instances(),
           .section = section.enabled(),

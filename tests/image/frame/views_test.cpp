@@ -143,6 +143,7 @@ std::vector<protocol::Settings> settings_for_all_buffers() {
   all[3].shadow_blur.half_resolution = all[4].shadow_blur.half_resolution = true;
   all[3].shadow_blur.iterations = all[4].shadow_blur.iterations = 4;
   all[4].shadow_blur.kernel = protocol::BlurKernel::full;
+  all[4].lens.depth_of_field = true;
   all[2].indirect.enabled = all[3].indirect.enabled = true;
   all[3].indirect_blur.kernel = protocol::BlurKernel::full;
   for (const char* assignment :

@@ -24,6 +24,11 @@ class Edits(ServerTestCase):
         model.add_light("sun", color=(1.0, 0.5, 0.25))
         model.add_light("sun", kind="point", intensity=20.0, translation=[0, 3, 0])
         model.save(os.path.join(cls.folder.name, "lit.glb"))
+        glass = next(one for one in model.json["materials"] if one["name"] == "diffuse")
+        glass["extensions"] = {"KHR_materials_transmission": {"transmissionFactor": 0.75},
+                               "KHR_materials_ior": {"ior": 1.25}}
+        model.json.setdefault("extensionsUsed", []).extend(glass["extensions"])
+        model.save(os.path.join(cls.folder.name, "glass.glb"))
         with open(os.path.join(cls.folder.name, "broken.hdr"), "wb") as file:
             file.write(b"#?RADIANCE\nnothing")
         cls.server = Server("--scene", "mirror", "--set", "antialiasing.jitter=false",
@@ -106,6 +111,63 @@ class Edits(ServerTestCase):
                             ({"base_color": 1}, "patch.base_color")):
             answer = self.server.ask("materials.patch", {"material": "diffuse", "patch": patch})
             self.assert_error(answer, -32602, path=path)
+
+    def material(self, name="diffuse"):
+        materials = self.server.call("materials.list")["materials"]
+        return next(material for material in materials if material["name"] == name)
+
+    def patch_material(self, **patch):
+        return self.server.call("materials.patch", {"material": "diffuse", "patch": patch})
+
+    def test_factors_of_extensions_are_listed_and_show_in_the_next_frame(self):
+        file = self.material()
+        self.assertEqual((file["ior"], file["clearcoat"], file["sheen_color"]), (1.5, 0, [0, 0, 0]))
+        self.assertNotIn("transmission", file)
+        # On a dark surface that reflects the most.
+        self.server.call("settings.patch", {"patch": {"environment": {"intensity": 1}}})
+        dark = self.patch_material(base_color=[0.02, 0.02, 0.02], roughness=0.2)["material"]
+        before = self.image()
+        for patch in ({"sheen_color": [0, 0, 1], "sheen_roughness": 0.5},
+                      {"specular_color": [0, 0, 0]}, {"ior": 2.5}, {"clearcoat": 1.0}):
+            changed = self.patch_material(**patch)["material"]
+            self.assertEqual(set(changed["changed"]), set(dark["changed"]) | set(patch))
+            edited = self.image()
+            self.assertGreater(difference(edited, before), 0.1, patch)
+            back = self.patch_material(**dict.fromkeys(patch))["material"]
+            self.assertEqual(back, dark)
+            self.assertLess(difference(self.image(), before), 0.5 * difference(edited, before))
+
+    def test_factors_of_extensions_have_limits(self):
+        for patch, path, limit in (({"clearcoat": 1.5}, "patch.clearcoat", "0 to 1"),
+                                   ({"ior": 0.5}, "patch.ior", ""),
+                                   ({"sheen_color": [0, 2, 0]}, "patch.sheen_color[1]", "0 to 1"),
+                                   ({"attenuation_distance": -1}, "patch.attenuation_distance", ""),
+                                   ({"transmission": 0.5}, "patch.transmission", ""),
+                                   ({"alpha_cutoff": 0.5}, "patch.alpha_cutoff", "")):
+            answer = self.server.ask("materials.patch", {"material": "diffuse", "patch": patch})
+            self.assert_error(answer, -32602, path=path, limit=limit)
+
+    def test_glass_is_edited_and_documents_carry_it(self):
+        self.server.call("scene.load", {"name": "glass"})
+        glass = self.material()
+        self.assertEqual((glass["ior"], glass["transmission"], glass["thickness"]), (1.25, 0.75, 0))
+        # Its image is noisy: rough glass in the light of an environment.
+        self.server.call("settings.patch", {"patch": {"accumulation": {"max_samples": 256}}})
+        before = self.image()
+        self.patch_material(transmission=0.25, thickness=0.5, attenuation_distance=0.25,
+                            attenuation_color=[1, 0, 0])
+        edited = self.image()
+        self.assertGreater(difference(edited, before), 0.2)
+        state = self.server.call("edits.get")
+        self.assertEqual(state["edits"]["materials"], [{"material": "diffuse", "patch": {
+            "transmission": 0.25, "thickness": 0.5, "attenuation_distance": 0.25,
+            "attenuation_color": [1, 0, 0]}}])
+        self.patch_material(transmission=None, thickness=None, attenuation_distance=None,
+                            attenuation_color=None)
+        self.assertEqual(self.material(), glass)
+        self.server.call("edits.apply", {"edits": state["edits"]})
+        self.assertEqual(self.material()["transmission"], 0.25)
+        self.assertLess(difference(self.image(), edited), 0.5 * difference(edited, before))
 
     def test_edits_do_not_affect_other_sessions(self):
         methods = {one["name"] for one in self.server.call("rpc.discover")["methods"]}

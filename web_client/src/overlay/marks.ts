@@ -1,5 +1,5 @@
 // Draws over the view what viewers have added to the scene: lines in an SVG, texts as labels. It
-// follows the camera of the page; captures do not show it.
+// follows the camera of the page; captures show it only on request, drawn by the server.
 
 import type { Vector3 } from "heliograph/json.ts";
 import type { Annotation, Measurement, Snap } from "heliograph/messages.ts";

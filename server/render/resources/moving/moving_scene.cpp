@@ -54,10 +54,16 @@ void MovingScene::bind_tables() {
       own_lights_ ? own_lights_ : shared.lights, shared.alpha_heap});
 }
 
-std::span<const shared::Material> MovingScene::materials() const {
-  if (!changed_materials_) return resources_->scene->materials;
-  const auto& [table, count, host, sets] = *changed_materials_;
-  return {reinterpret_cast<const shared::Material*>(table.mapped()), count};
+MaterialTables MovingScene::material_tables() const {
+  const scene::Scene& scene = *resources_->scene;
+  if (!changed_materials_) return {scene.materials, scene.layers};
+  const auto& [table, count, layers, layer_count, host, sets] = *changed_materials_;
+  MaterialTables made{{reinterpret_cast<const shared::Material*>(table.mapped()), count},
+                      scene.layers};
+  if (layer_count > 0) {
+    made.layers = {reinterpret_cast<const shared::MaterialLayer*>(layers.mapped()), layer_count};
+  }
+  return made;
 }
 
 bool MovingScene::remake_emissive() {
@@ -118,10 +124,18 @@ const kernels::MaterialTable& MovingScene::host_materials() const {
   return changed_materials_ ? changed_materials_->host : resources_->host_materials;
 }
 
+const gpu::Buffer& MovingScene::layers() const {
+  const bool own = changed_materials_ && changed_materials_->layers;
+  return own ? changed_materials_->layers : resources_->layers;
+}
+
 const std::vector<VkDescriptorSet>& MovingScene::material_sets() const {
   if (!changed_materials_) return resources_->material_sets().sets;
   auto& sets = changed_materials_->sets;
-  if (!sets) sets = resources_->make_material_sets(materials(), gpu::Memory::upload);
+  if (!sets) {
+    const bool layered = (features_ & shared::scene_layers) != 0;
+    sets = resources_->make_material_sets(material_tables(), layered, gpu::Memory::upload);
+  }
   return sets->sets;
 }
 
@@ -143,41 +157,85 @@ bool MovingScene::set_lights(std::span<const shared::Light> lights) {
   return true;
 }
 
-bool MovingScene::set_materials(std::span<const shared::Material> materials) {
-  if (!hidden_materials_) return replace_materials(materials);
-  hidden_materials_->assign(materials.begin(), materials.end());
+bool MovingScene::set_materials(std::span<const shared::Material> materials,
+                                std::span<const shared::MaterialLayer> layers) {
+  if (!hidden_materials_) return replace_materials({materials, layers});
+  hidden_materials_->materials.assign(materials.begin(), materials.end());
+  hidden_materials_->layers.assign(layers.begin(), layers.end());
   return false;
 }
 
 void MovingScene::set_plain(bool plain) {
   if (hidden_materials_.has_value() == plain) return;
   if (!plain) {
-    replace_materials(*std::exchange(hidden_materials_, std::nullopt));
+    const HiddenMaterials hidden = *std::exchange(hidden_materials_, std::nullopt);
+    replace_materials({hidden.materials, hidden.layers});
     return;
   }
-  const std::span<const shared::Material> shown = materials();
-  hidden_materials_.emplace(shown.begin(), shown.end());
+  const auto& [shown, layers] = material_tables();
+  hidden_materials_.emplace(HiddenMaterials{{shown.begin(), shown.end()}, {}});
+  if (changed_materials_ && changed_materials_->layer_count > 0) {
+    hidden_materials_->layers.assign(layers.begin(), layers.end());
+  }
   std::vector<shared::Material> all(shown.size());
   std::ranges::transform(shown, all.begin(), plain_material);
-  replace_materials(all);
+  replace_materials({all, {}});
 }
 
-bool MovingScene::replace_materials(std::span<const shared::Material> materials) {
+/// No `tables.layers`: the scene's.
+bool MovingScene::replace_materials(MaterialTables tables) {
+  const auto& [materials, layers] = tables;
   const bool emission = !same_emission(this->materials(), materials);
-  kernels::MaterialTable host;
-  if (device_.is_cpu()) host = resources_->make_host_materials(materials);
-  if (changed_materials_) {
+  const bool is_first = !changed_materials_;
+  if (is_first) {
+    changed_materials_ = std::make_unique<ChangedMaterials>(ChangedMaterials{
+        writable_table(device_, "materials now", materials, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT),
+        materials.size(),
+        {},
+        0,
+        {}});
+  } else {
     std::memcpy(changed_materials_->table.mapped(), materials.data(), materials.size_bytes());
-    if (changed_materials_->sets) changed_materials_->sets->write(materials);
-    changed_materials_->host = std::move(host);
-    return emission && remake_emissive();
   }
-  changed_materials_ = std::make_unique<ChangedMaterials>(ChangedMaterials{
-      writable_table(device_, "materials now", materials, VK_BUFFER_USAGE_STORAGE_BUFFER_BIT),
-      materials.size(), std::move(host)});
-  if (emission) remake_emissive();
-  bind_tables();
-  return true;
+  bool rebuilds = write_layers(layers);
+  rebuilds |= update_layer_feature(materials);
+  const MaterialTables now = material_tables();
+  if (device_.is_cpu()) changed_materials_->host = resources_->make_host_materials(now);
+  auto& sets = changed_materials_->sets;
+  if (sets && (rebuilds || !sets->write(now))) {
+    sets.reset();
+    rebuilds = true;
+  }
+  if (emission) rebuilds |= remake_emissive();
+  if (is_first) bind_tables();
+  return rebuilds || is_first;
+}
+
+/// @return whether another buffer has them
+bool MovingScene::write_layers(std::span<const shared::MaterialLayer> layers) {
+  auto& [table, count, own, own_count, host, sets] = *changed_materials_;
+  own_count = layers.size();
+  if (!own && layers.empty()) return false;
+  if (layers.empty()) layers = resources_->scene->layers;
+  if (layers.empty()) return false;  // no material has one
+  const bool fits = own && layers.size_bytes() <= own.size();
+  if (!fits) {
+    constexpr std::size_t more = 8;
+    own = gpu::Buffer(device_, "material layers now",
+                      (layers.size() + more) * sizeof(shared::MaterialLayer),
+                      VK_BUFFER_USAGE_STORAGE_BUFFER_BIT, gpu::Memory::upload);
+  }
+  std::memcpy(own.mapped(), layers.data(), layers.size_bytes());
+  return !fits;
+}
+
+/// Shaders without layers know none. @return whether the feature changed
+bool MovingScene::update_layer_feature(std::span<const shared::Material> materials) {
+  const bool layered = (resources_->features & shared::scene_layers) != 0 ||
+                       std::ranges::any_of(materials, &shared::Material::layer);
+  const std::uint32_t before = features_;
+  features_ = (before & ~shared::scene_layers) | (layered ? shared::scene_layers : 0u);
+  return features_ != before;
 }
 
 void MovingScene::set_environment(std::shared_ptr<const LitEnvironment> environment) {

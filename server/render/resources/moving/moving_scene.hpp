@@ -53,6 +53,8 @@ class MovingScene {
   /// Whether no light of the scene's own or of a chosen environment is beside the studio's.
   bool lit_by_studio_alone() const;
   const kernels::MaterialTable& host_materials() const;
+  /// shared::MaterialLayer each, what Material::layer counts; read like tables().
+  const gpu::Buffer& layers() const;
   /// For the rasteriser; the first call may make them. Not while a frame runs.
   const std::vector<VkDescriptorSet>& material_sets() const;
 
@@ -61,10 +63,12 @@ class MovingScene {
   /// refers to lights of another number.
   /// @return whether tables() or features() changed: plans must be rebuilt
   bool set_lights(std::span<const shared::Light> lights);
-  /// Other values for the scene's materials, with the same textures, alpha and flags, which rays
-  /// and draws go by. Never while a frame runs.
-  /// @return whether tables(), emissive() or features() changed: plans must be rebuilt
-  bool set_materials(std::span<const shared::Material> materials);
+  /// Other values for the scene's materials, with the same textures, alpha, flags and `passing`,
+  /// which rays and draws go by. Material::layer counts `layers`, of which the first adds nothing;
+  /// none: the scene's. Never while a frame runs.
+  /// @return whether tables(), layers(), emissive() or features() changed: plans must be rebuilt
+  bool set_materials(std::span<const shared::Material> materials,
+                     std::span<const shared::MaterialLayer> layers = {});
   /// Whether all materials are one, grey, rough and opaque but for holes, whatever they are. Never
   /// while a frame runs; plans must be rebuilt.
   void set_plain(bool plain);
@@ -109,12 +113,21 @@ class MovingScene {
   struct ChangedMaterials {
     gpu::Buffer table;  // shared::Material each, `count` of them
     std::size_t count;
+    gpu::Buffer layers;       // shared::MaterialLayer each, with room for more; empty: the scene's
+    std::size_t layer_count;  // 0: the scene's
     kernels::MaterialTable host;
     std::optional<MaterialSets> sets = std::nullopt;  // once the rasteriser needs them
   };
+  struct HiddenMaterials {
+    std::vector<shared::Material> materials;
+    std::vector<shared::MaterialLayer> layers;  // empty: the scene's
+  };
 
-  std::span<const shared::Material> materials() const;
-  bool replace_materials(std::span<const shared::Material> materials);
+  std::span<const shared::Material> materials() const { return material_tables().materials; }
+  MaterialTables material_tables() const;
+  bool replace_materials(MaterialTables tables);
+  bool write_layers(std::span<const shared::MaterialLayer> layers);
+  bool update_layer_feature(std::span<const shared::Material> materials);
   bool remake_emissive();
   std::vector<glm::mat4> shining_worlds() const;
   void list_shown_draws();
@@ -129,8 +142,8 @@ class MovingScene {
   const gpu::Device& device_;
   std::shared_ptr<const SceneResources> resources_;
   std::shared_ptr<const LitEnvironment> environment_;
-  std::unique_ptr<ChangedMaterials> changed_materials_;            // null: the scene's
-  std::optional<std::vector<shared::Material>> hidden_materials_;  // by set_plain()
+  std::unique_ptr<ChangedMaterials> changed_materials_;  // null: the scene's
+  std::optional<HiddenMaterials> hidden_materials_;      // by set_plain()
   EmissiveLights emissive_;
   std::vector<shared::Light> lights_at_rest_;
   std::uint32_t features_ = 0;

@@ -65,7 +65,7 @@ std::vector<std::string> write_changed(const Scene& scene, const SceneChanges& c
   const auto nodes = find_document_nodes(file, scene, shown, limits, stop);
   EditableDocument document(file.take_document(), shown, warnings);
   export_variant(document, scene);
-  export_materials(document, scene, changes.materials);
+  export_materials(document, scene, changes);
   export_lights(document, scene, nodes, changes.lights);
   export_hidden(document, scene, nodes, changes.hidden);
   const std::vector<std::uint8_t> binary = embed_files(file, document, limits);

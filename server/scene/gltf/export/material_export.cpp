@@ -77,6 +77,16 @@ void write_slot(json& material, const char* slot, const char* member, float valu
   if (found != material.end()) (*found)[member] = value;
 }
 
+/// Factors of one extension; those of a material without it are written where they do something.
+void write_extension(EditableDocument& document, json& material, const char* name, bool needed,
+                     const json& factors) {
+  const auto extensions = material.find("extensions");
+  const bool there = extensions != material.end() && extensions->contains(name);
+  if (!there && !needed) return;
+  material["extensions"][name].update(factors);
+  document.use(name);
+}
+
 void write_material(EditableDocument& document, json& material, const std::string& name,
                     const shared::Material& before, const shared::Material& now) {
   if (has_other_surface(before, now) && shows_core_material(document, material, name, before)) {
@@ -89,11 +99,50 @@ void write_material(EditableDocument& document, json& material, const std::strin
   if (before.occlusion_strength != now.occlusion_strength) {
     write_slot(material, "occlusionTexture", "strength", now.occlusion_strength);
   }
+  if (before.ior != now.ior) {
+    write_extension(document, material, "KHR_materials_ior", true, {{"ior", now.ior}});
+  }
+}
+
+json triple(const glm::vec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+void write_volume(EditableDocument& document, json& material, const MaterialLayers& now) {
+  json factors{{"thicknessFactor", now.thickness},
+               {"attenuationColor", triple(now.attenuation_color)}};
+  // Without a distance it is infinite.
+  if (now.attenuation_distance > 0.0f) factors["attenuationDistance"] = now.attenuation_distance;
+  constexpr const char* name = "KHR_materials_volume";
+  write_extension(document, material, name, now.thickness > 0.0f, factors);
+  const auto extensions = material.find("extensions");
+  if (now.attenuation_distance > 0.0f || extensions == material.end()) return;
+  if (extensions->contains(name)) (*extensions)[name].erase("attenuationDistance");
+}
+
+void write_extensions(EditableDocument& document, json& material, const MaterialLayers& now) {
+  const bool specular = now.specular != 1.0f || now.specular_color != glm::vec3(1.0f);
+  write_extension(
+      document, material, "KHR_materials_specular", specular,
+      {{"specularFactor", now.specular}, {"specularColorFactor", triple(now.specular_color)}});
+  constexpr const char* coat = "KHR_materials_clearcoat";
+  write_extension(
+      document, material, coat, now.clearcoat > 0.0f,
+      {{"clearcoatFactor", now.clearcoat}, {"clearcoatRoughnessFactor", now.clearcoat_roughness}});
+  write_extension(document, material, "KHR_materials_sheen", now.sheen_color != glm::vec3(0.0f),
+                  {{"sheenColorFactor", triple(now.sheen_color)},
+                   {"sheenRoughnessFactor", now.sheen_roughness}});
+  write_extension(document, material, "KHR_materials_transmission", now.transmission > 0.0f,
+                  {{"transmissionFactor", now.transmission}});
+  write_volume(document, material, now);
+  const auto extensions = material.find("extensions");
+  if (extensions == material.end() || !extensions->contains(coat)) return;
+  write_slot((*extensions)[coat], "clearcoatNormalTexture", "scale", now.clearcoat_normal_scale);
 }
 
 bool differs_in_factors(const shared::Material& a, const shared::Material& b) {
   return has_other_surface(a, b) || a.emissive != b.emissive || a.normal_scale != b.normal_scale ||
-         a.occlusion_strength != b.occlusion_strength;
+         a.occlusion_strength != b.occlusion_strength || a.ior != b.ior;
 }
 
 }  // namespace
@@ -112,14 +161,16 @@ void export_variant(EditableDocument& document, const Scene& scene) {
   });
 }
 
-void export_materials(EditableDocument& document, const Scene& scene,
-                      std::span<const shared::Material> materials) {
-  for (std::size_t i = 0; i < materials.size(); ++i) {
+void export_materials(EditableDocument& document, const Scene& scene, const SceneChanges& changes) {
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     const shared::Material& before = scene.materials[i];
-    if (!differs_in_factors(before, materials[i])) continue;
+    const shared::Material& now = changes.materials.empty() ? before : changes.materials[i];
+    const bool extended = i < changes.extensions.size() && changes.extensions[i];
+    if (!extended && !differs_in_factors(before, now)) continue;
     const bool in_file = i < document.list("materials").size();
     json& material = in_file ? document.list("materials")[i] : add_default_material(document);
-    write_material(document, material, scene.material_names[i], before, materials[i]);
+    write_material(document, material, scene.material_names[i], before, now);
+    if (extended) write_extensions(document, material, *changes.extensions[i]);
   }
 }
 

@@ -1,8 +1,7 @@
 #pragma once
 
-#include <span>
-
 #include "scene/gltf/export/editable_document.hpp"
+#include "scene/gltf/export/scene_changes.hpp"
 #include "scene/scene.hpp"
 
 namespace heliograph::scene {
@@ -10,9 +9,8 @@ namespace heliograph::scene {
 /// Makes the materials of the variant that the scene shows those of the primitives.
 void export_variant(EditableDocument& document, const Scene& scene);
 
-/// Writes the factors of materials that differ from the scene's, `materials` in its order. What
+/// Writes the factors of materials that differ from the scene's, of their extensions as well. What
 /// glTF has no place for is told in warnings.
-void export_materials(EditableDocument& document, const Scene& scene,
-                      std::span<const shared::Material> materials);
+void export_materials(EditableDocument& document, const Scene& scene, const SceneChanges& changes);
 
 }  // namespace heliograph::scene

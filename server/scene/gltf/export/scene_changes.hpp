@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,6 +20,8 @@ struct LightChange {
 /// What differs from a scene's file.
 struct SceneChanges {
   std::vector<shared::Material> materials;  // all of the scene, in its order; empty: as in the file
+  /// By material, where its extensions differ from the file; or empty.
+  std::vector<std::optional<MaterialLayers>> extensions;
   std::vector<LightChange> lights;    // those of the scene, then those that are added; or empty
   std::vector<std::uint32_t> hidden;  // nodes of the scene, which hide those below them
 };

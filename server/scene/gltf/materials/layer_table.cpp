@@ -56,6 +56,36 @@ float passing(const Scene& scene, const shared::Material& material, const Materi
          luminance(tint);
 }
 
+/// Treats a transmissive surface as a blended one, with the transmitted fraction as transparency.
+void let_light_through(const Scene& scene, shared::Material& material, const MaterialLayers& from) {
+  if (!(material.flags & shared::material_alpha_blend)) {
+    material.base_color.w = 1.0f;
+    material.flags |= shared::material_alpha_blend | shared::material_whole_alpha;
+  }
+  material.passing = std::min(passing(scene, material, from), 1.0f - least_coverage);
+}
+
+}  // namespace
+
+shared::MaterialLayer plain_layer() {
+  shared::MaterialLayer layer{};
+  layer.specular_color = glm::vec3(1.0f);
+  layer.specular = 1.0f;
+  layer.dielectric = 0.04f;
+  layer.coat_normal_scale = 1.0f;
+  for (shared::TextureSlot* slot :
+       {&layer.specular_texture, &layer.specular_color_texture, &layer.coat_texture,
+        &layer.coat_roughness_texture, &layer.coat_normal_texture, &layer.sheen_color_texture,
+        &layer.sheen_roughness_texture, &layer.transmission_texture, &layer.thickness_texture}) {
+    *slot = no_texture_slot();
+  }
+  return layer;
+}
+
+bool adds_nothing(const shared::MaterialLayer& layer) {
+  return same(layer, plain_layer());
+}
+
 shared::MaterialLayer layer_of(const shared::Material& material, const MaterialLayers& from) {
   shared::MaterialLayer layer = plain_layer();
   // Exactly 0.04 for the default ior of 1.5.
@@ -83,32 +113,6 @@ shared::MaterialLayer layer_of(const shared::Material& material, const MaterialL
     layer.absorption = absorption(from);
     layer.transmission_texture = from.transmission_texture;
     layer.thickness_texture = from.thickness_texture;
-  }
-  return layer;
-}
-
-/// Treats a transmissive surface as a blended one, with the transmitted fraction as transparency.
-void let_light_through(const Scene& scene, shared::Material& material, const MaterialLayers& from) {
-  if (!(material.flags & shared::material_alpha_blend)) {
-    material.base_color.w = 1.0f;
-    material.flags |= shared::material_alpha_blend | shared::material_whole_alpha;
-  }
-  material.passing = std::min(passing(scene, material, from), 1.0f - least_coverage);
-}
-
-}  // namespace
-
-shared::MaterialLayer plain_layer() {
-  shared::MaterialLayer layer{};
-  layer.specular_color = glm::vec3(1.0f);
-  layer.specular = 1.0f;
-  layer.dielectric = 0.04f;
-  layer.coat_normal_scale = 1.0f;
-  for (shared::TextureSlot* slot :
-       {&layer.specular_texture, &layer.specular_color_texture, &layer.coat_texture,
-        &layer.coat_roughness_texture, &layer.coat_normal_texture, &layer.sheen_color_texture,
-        &layer.sheen_roughness_texture, &layer.transmission_texture, &layer.thickness_texture}) {
-    *slot = no_texture_slot();
   }
   return layer;
 }

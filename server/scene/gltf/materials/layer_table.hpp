@@ -6,6 +6,11 @@ namespace heliograph::scene {
 
 /// glTF's base material, without extensions.
 shared::MaterialLayer plain_layer();
+/// Whether a material with this layer looks like one without extensions.
+bool adds_nothing(const shared::MaterialLayer& layer);
+
+/// The layer of a material with these extensions. With an alpha mask it transmits nothing.
+shared::MaterialLayer layer_of(const shared::Material& material, const MaterialLayers& from);
 
 /// Creates scene.layers from the materials' extensions, without duplicates, and links the materials
 /// to them. Transmissive surfaces (KHR_materials_transmission) become blended ones: see README.md.

@@ -239,6 +239,29 @@ TEST(GlbExport, FactorsOfMaterials) {
   EXPECT_TRUE(exported.warnings.empty());
 }
 
+TEST(GlbExport, FactorsOfExtensionsAreWrittenWhereTheyDoSomething) {
+  Exported exported(everything());
+  exported.material(0).ior = 1.3f;
+  MaterialLayers layers = exported.before.material_layers.empty()
+                              ? MaterialLayers()
+                              : exported.before.material_layers[0];
+  layers.clearcoat = 0.75f;
+  layers.clearcoat_roughness = 0.25f;
+  layers.sheen_color = {0.5f, 0.25f, 0.0f};
+  exported.changes.extensions = {layers};
+  exported.write();
+  ASSERT_FALSE(exported.after.material_layers.empty());
+  const MaterialLayers& after = exported.after.material_layers[0];
+  EXPECT_EQ(after.clearcoat, 0.75f);
+  EXPECT_EQ(after.clearcoat_roughness, 0.25f);
+  EXPECT_EQ(after.sheen_color, layers.sheen_color);
+  EXPECT_EQ(exported.after.materials[0].ior, 1.3f);
+  const json extensions = exported.document().at("materials")[0].at("extensions");
+  EXPECT_FALSE(extensions.contains("KHR_materials_volume"));
+  EXPECT_FALSE(extensions.contains("KHR_materials_specular"));
+  EXPECT_TRUE(exported.warnings.empty());
+}
+
 TEST(GlbExport, EmissionUpToOneNeedsNoExtension) {
   GltfBuilder builder = everything();
   builder.json["materials"][0]["emissiveFactor"] = {1, 1, 1};

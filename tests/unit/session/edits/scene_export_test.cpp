@@ -73,6 +73,12 @@ TEST(SceneExport, MaterialsAreThoseOfTheSession) {
       protocol::MaterialsPatch{.material = "paint", .patch = {.roughness = {.value = 0.5f}}}));
   ASSERT_EQ(parts.made().changes.materials.size(), 1u);
   EXPECT_EQ(parts.made().changes.materials[0].roughness, 0.5f);
+  ASSERT_EQ(parts.made().changes.extensions.size(), 1u);
+  EXPECT_FALSE(parts.made().changes.extensions[0]) << "as in the file";
+  ASSERT_TRUE(parts.edits.patch(
+      protocol::MaterialsPatch{.material = "paint", .patch = {.clearcoat = {.value = 0.5f}}}));
+  ASSERT_TRUE(parts.made().changes.extensions[0]);
+  EXPECT_EQ(parts.made().changes.extensions[0]->clearcoat, 0.5f);
 }
 
 TEST(SceneExport, IsolatedNodesHideAllOthers) {

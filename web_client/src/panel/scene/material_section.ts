@@ -1,12 +1,14 @@
 // Edits one material of the scene, and sweeps its roughness.
 
-import type { MaterialInfo } from "heliograph/messages.ts";
+import type { MaterialInfo, MaterialPatch } from "heliograph/messages.ts";
 import { displayColour, linearColour } from "../../common/colour.ts";
+import { preferences } from "../../common/preferences.ts";
 import type { SceneParts } from "../../session/scene_parts.ts";
-import { button, element, setOptions } from "../../widgets/element.ts";
+import { button, element, icon, setOptions } from "../../widgets/element.ts";
 import { field } from "../../widgets/field.ts";
 import { createSection } from "../../widgets/section.ts";
 import { createSliderRow } from "../../widgets/slider_row.ts";
+import { createMaterialRows } from "./material_rows.ts";
 
 const sweepMs = 6000;
 const sweepStepMs = 100;
@@ -21,9 +23,9 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
   const select = element("select", { name: "material", change: () => show() });
   const selected = (): MaterialInfo | undefined =>
     parts.materials.value.find(({ name }) => name === select.value) ?? parts.materials.value[0];
-  const patch = (change: Partial<MaterialInfo>): void => {
+  const patch = (change: MaterialPatch): void => {
     const material = selected();
-    if (material) parts.patchMaterial(material.name, change);
+    if (material) parts.patchMaterial(material.name, change as Partial<MaterialInfo>);
   };
   const fraction = (label: string, description: string, report: (value: number) => void) =>
     createSliderRow(
@@ -54,6 +56,7 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
     (value) => patch({ roughness: value }),
     () => selected()?.roughness,
   );
+  const rows = createMaterialRows(patch);
   const body = element(
     "div",
     { class: "section-body" },
@@ -62,6 +65,7 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
     roughness.node,
     metallic.node,
     sweep,
+    createFold(rows.nodes),
   );
   const show = (): void => {
     const material = selected();
@@ -70,6 +74,7 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
     roughness.show(material.roughness);
     metallic.show(material.metallic);
     colour.value = displayColour(material.base_color);
+    rows.show(material);
   };
   const node = createSection({ id: "materials", title: "Materials", body, openByDefault: false });
   parts.materials.watch((materials) => {
@@ -85,6 +90,21 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
     show();
   };
   return { node, choose };
+}
+
+function createFold(nodes: HTMLElement[]): HTMLElement {
+  const key = "open.material_factors";
+  const fold = element(
+    "details",
+    {
+      class: "inner-fold",
+      open: preferences.flag(key, false),
+      toggle: () => preferences.setFlag(key, fold.open),
+    },
+    element("summary", {}, icon("chevron"), element("h3", {}, "Emission, coat, sheen and glass")),
+    ...nodes,
+  );
+  return fold;
 }
 
 /** Animates the roughness from 0 to 1, then restores it. */

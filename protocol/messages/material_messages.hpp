@@ -1,0 +1,216 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "protocol/json/fields.hpp"
+#include "protocol/limits.hpp"
+#include "protocol/messages/session_messages.hpp"
+
+// Messages about the materials of a scene: glTF's factors, those of its extensions included. Edits
+// belong to one session.
+
+namespace heliograph::protocol {
+
+/// Members of extensions are absent where the material cannot have them: unlit ones have none, and
+/// only those whose file lets light through have the last four.
+struct MaterialInfo {
+  std::string name;
+  Vec3 base_color{};
+  float roughness = 0.0f;
+  float metallic = 0.0f;
+  Vec3 emissive{};
+  float normal_scale = 1.0f;
+  float occlusion_strength = 1.0f;
+  std::optional<float> alpha_cutoff;
+  std::optional<float> ior;
+  std::optional<float> specular;
+  std::optional<Vec3> specular_color;
+  std::optional<float> clearcoat;
+  std::optional<float> clearcoat_roughness;
+  std::optional<float> clearcoat_normal_scale;
+  std::optional<Vec3> sheen_color;
+  std::optional<float> sheen_roughness;
+  std::optional<float> transmission;
+  std::optional<float> thickness;
+  std::optional<float> attenuation_distance;
+  std::optional<Vec3> attenuation_color;
+  std::vector<std::string> textures;
+  std::vector<std::string> changed;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("name", &MaterialInfo::name, "Unique name for materials.patch."),
+        field("base_color", &MaterialInfo::base_color, "Linear factor on the texture, if any."),
+        field("roughness", &MaterialInfo::roughness,
+              "Perceptual roughness, factor on the texture, if any."),
+        field("metallic", &MaterialInfo::metallic, "Metalness, factor on the texture, if any."),
+        field("emissive", &MaterialInfo::emissive,
+              "Linear emitted radiance, factor on the texture, if any."),
+        field("normal_scale", &MaterialInfo::normal_scale, "Scale of the normal texture."),
+        field("occlusion_strength", &MaterialInfo::occlusion_strength,
+              "Strength of the occlusion texture."),
+        field("alpha_cutoff", &MaterialInfo::alpha_cutoff,
+              "Opacity below which there is a hole, of materials with an alpha mask."),
+        field("ior", &MaterialInfo::ior, "Index of refraction; 0: it reflects all light."),
+        field("specular", &MaterialInfo::specular,
+              "Strength of the dielectric reflection, factor on the texture, if any."),
+        field("specular_color", &MaterialInfo::specular_color,
+              "Linear colour of the dielectric reflection, factor on the texture, if any."),
+        field("clearcoat", &MaterialInfo::clearcoat,
+              "Fraction under a clear coat, factor on the texture, if any."),
+        field("clearcoat_roughness", &MaterialInfo::clearcoat_roughness,
+              "Perceptual roughness of the clear coat, factor on the texture, if any."),
+        field("clearcoat_normal_scale", &MaterialInfo::clearcoat_normal_scale,
+              "Scale of the clear coat's normal texture."),
+        field("sheen_color", &MaterialInfo::sheen_color,
+              "Linear colour of the sheen, factor on the texture, if any; black: none."),
+        field("sheen_roughness", &MaterialInfo::sheen_roughness,
+              "Perceptual roughness of the sheen, factor on the texture, if any."),
+        field("transmission", &MaterialInfo::transmission,
+              "Fraction of light that passes, factor on the texture, if any."),
+        field("thickness", &MaterialInfo::thickness,
+              "Thickness below the surface, factor on the texture, if any; 0: thin walled.")
+            .unit("metres"),
+        field("attenuation_distance", &MaterialInfo::attenuation_distance,
+              "Distance after which light has the attenuation colour; 0: infinite.")
+            .unit("metres"),
+        field("attenuation_color", &MaterialInfo::attenuation_color,
+              "Linear colour of white light after the attenuation distance."),
+        field("textures", &MaterialInfo::textures, "Members that have a texture."),
+        field("changed", &MaterialInfo::changed, "Members that differ from the scene file."),
+    };
+  }
+  bool operator==(const MaterialInfo&) const = default;
+};
+
+struct MaterialList {
+  std::vector<MaterialInfo> materials;
+  std::uint32_t rev = 0;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("materials", &MaterialList::materials,
+              "The materials of the scene with the session's edits."),
+        field("rev", &MaterialList::rev, "Revision of the session's state."),
+    };
+  }
+  bool operator==(const MaterialList&) const = default;
+};
+
+struct MaterialPatch {
+  static constexpr bool strict = true;
+  Change<Vec3> base_color;
+  Change<float> roughness;
+  Change<float> metallic;
+  Change<Vec3> emissive;
+  Change<float> normal_scale;
+  Change<float> occlusion_strength;
+  Change<float> ior;
+  Change<float> specular;
+  Change<Vec3> specular_color;
+  Change<float> clearcoat;
+  Change<float> clearcoat_roughness;
+  Change<float> clearcoat_normal_scale;
+  Change<Vec3> sheen_color;
+  Change<float> sheen_roughness;
+  Change<float> transmission;
+  Change<float> thickness;
+  Change<float> attenuation_distance;
+  Change<Vec3> attenuation_color;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("base_color", &MaterialPatch::base_color, "Linear factor.").range(0, 1),
+        field("roughness", &MaterialPatch::roughness, "Perceptual roughness.").range(0, 1),
+        field("metallic", &MaterialPatch::metallic, "Metalness.").range(0, 1),
+        field("emissive", &MaterialPatch::emissive, "Linear emitted radiance.").range(0, 1e6),
+        field("normal_scale", &MaterialPatch::normal_scale, "Scale of the normal texture.")
+            .range(0, 16),
+        field("occlusion_strength", &MaterialPatch::occlusion_strength,
+              "Strength of the occlusion texture.")
+            .range(0, 1),
+        field("ior", &MaterialPatch::ior,
+              "Index of refraction: 1 and more, or 0: all light is reflected.")
+            .range(0, 10),
+        field("specular", &MaterialPatch::specular, "Strength of the dielectric reflection.")
+            .range(0, 1),
+        field("specular_color", &MaterialPatch::specular_color,
+              "Linear colour of the dielectric reflection.")
+            .range(0, 1000),
+        field("clearcoat", &MaterialPatch::clearcoat, "Fraction under a clear coat.").range(0, 1),
+        field("clearcoat_roughness", &MaterialPatch::clearcoat_roughness,
+              "Perceptual roughness of the clear coat.")
+            .range(0, 1),
+        field("clearcoat_normal_scale", &MaterialPatch::clearcoat_normal_scale,
+              "Scale of the clear coat's normal texture.")
+            .range(0, 16),
+        field("sheen_color", &MaterialPatch::sheen_color, "Linear colour of the sheen.")
+            .range(0, 1),
+        field("sheen_roughness", &MaterialPatch::sheen_roughness,
+              "Perceptual roughness of the sheen.")
+            .range(0, 1),
+        field("transmission", &MaterialPatch::transmission,
+              "Fraction of light that passes, of materials whose file lets light through.")
+            .range(0, 1),
+        field("thickness", &MaterialPatch::thickness, "Thickness; 0: thin walled.")
+            .range(0, 1e6)
+            .unit("metres"),
+        field("attenuation_distance", &MaterialPatch::attenuation_distance,
+              "Distance after which light has the attenuation colour; 0: infinite.")
+            .range(0, 1e6)
+            .unit("metres"),
+        field("attenuation_color", &MaterialPatch::attenuation_color,
+              "Linear colour of white light after the attenuation distance.")
+            .range(0, 1),
+    };
+  }
+  bool operator==(const MaterialPatch&) const = default;
+};
+
+struct MaterialsPatch {
+  std::string material;
+  MaterialPatch patch;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("material", &MaterialsPatch::material, "A name from materials.list.")
+            .length(1, max_node_name),
+        field("patch", &MaterialsPatch::patch,
+              "A merge patch (RFC 7386); null restores the value of the scene file."),
+    };
+  }
+  bool operator==(const MaterialsPatch&) const = default;
+};
+
+struct MaterialState {
+  MaterialInfo material;
+  std::uint32_t rev = 0;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("material", &MaterialState::material, "The material after the change."),
+        field("rev", &MaterialState::rev, "Revision of the session's state."),
+    };
+  }
+  bool operator==(const MaterialState&) const = default;
+};
+
+struct MaterialsChanged {
+  MaterialInfo material;
+  std::uint32_t rev = 0;
+  std::string by;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("material", &MaterialsChanged::material, "The material after the change."),
+        field("rev", &MaterialsChanged::rev, "Revision of the session's state."),
+        field("by", &MaterialsChanged::by, "The viewer that changed it; empty: the server."),
+    };
+  }
+  bool operator==(const MaterialsChanged&) const = default;
+};
+
+}  // namespace heliograph::protocol
