@@ -58,13 +58,16 @@ class Sweep:
         return calls
 
     async def sweep(self, function, error, action, *, points=None, must_work=False, restart=False,
-                    **rule):
+                    around_end=0, **rule):
         """The n-th call fails, for n from 1 to what the action makes. `must_work`: the caller goes
-        on as if nothing were wrong, as after EINTR; `restart`: with a new server each time."""
+        on as if nothing were wrong, as after EINTR; `restart`: with a new server each time;
+        `around_end`: also every third call so near the last, where answers are made."""
         counted = {name: value for name, value in rule.items() if name == "only"}
         calls = await self.count(function, action, **counted)
         name = f"{action}: {function}" + (f" on {rule['only']}" if rule.get("only") else "")
         numbers = spread(calls, points or self.points)
+        if around_end:
+            numbers = sorted({*numbers, *range(max(1, calls - around_end), calls + around_end, 3)})
         for number in numbers:
             await self.inject(function, number, error, action, name, must_work, **rule)
             if restart and self.stage.server.alive:
@@ -244,7 +247,8 @@ async def sweep_driver(sweep):
 async def sweep_shortly(sweep):
     """A call of every kind, in seconds."""
     for action, points in (("pages", 4), ("open", 4), ("capture", 4), ("load", 3)):
-        await sweep.sweep("operator_new", errno.ENOMEM, action, points=points)
+        await sweep.sweep("operator_new", errno.ENOMEM, action, points=points,
+                          around_end=15 if action == "pages" else 0)
     await sweep.sweep("pread", errno.EIO, "load", points=1, only=".glb")
     await sweep.sweep("write", errno.ENOSPC, "upload", points=1, only="incoming")
     await sweep.sweep("rename", errno.EIO, "upload", points=1)

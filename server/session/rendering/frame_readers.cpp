@@ -16,6 +16,13 @@ namespace heliograph::session {
 
 using protocol::Result;
 
+/// What a capture is written from, beside the render thread.
+struct CapturedContent {
+  CaptureContent content;
+  stream::ImageMarks marks;
+  std::uint32_t samples;
+};
+
 namespace {
 
 constexpr std::chrono::minutes capture_timeout{5};
@@ -26,13 +33,6 @@ bool shows_state_since(const ReadableFrame& frame, Clock::time_point moment) {
   if (frame.lockstep) return frame.stepped;
   return frame.shows_state && (!frame.state.animation.playing || frame.began >= moment);
 }
-
-/// What a capture is written from, beside the render thread.
-struct CapturedContent {
-  CaptureContent content;
-  stream::ImageMarks marks;
-  std::uint32_t samples;
-};
 
 void draw_over(CaptureContent& content, const stream::ImageMarks& marks) {
   if (auto* const frame = std::get_if<render::Frame>(&content.values)) {
@@ -58,6 +58,16 @@ Result<Capture> encoded(CapturedContent& captured, const CaptureRequest& request
   }
 }
 
+/// With an error where there is no memory for a large answer.
+void answer(const CaptureRequest& request, CapturedContent& captured) {
+  try {
+    request.done(encoded(captured, request));
+  } catch (const std::exception& failure) {
+    log_error({}, std::string("a capture could not be sent: ") + failure.what());
+    request.done(protocol::error::internal());
+  }
+}
+
 }  // namespace
 
 bool lacks_reference_alone(const protocol::Settings& settings, const render::Frame& frame) {
@@ -74,23 +84,37 @@ FrameReaders::FrameReaders(Session& session, Worker& capture_writer, Measurement
 
 void FrameReaders::collect() {
   const Clock::time_point now = Clock::now();
-  for (CaptureRequest& request : session_.captures().take_captures()) {
-    request.done = [done = std::move(request.done), now,
-                    &measurements = measurements_](const Result<Capture>& result) {
-      if (result) {
-        measurements.captured(std::chrono::duration<double>(Clock::now() - now).count());
-      } else {
-        measurements.capture_failed();
-      }
-      done(result);
-    };
+  std::vector<CaptureRequest> taken = session_.captures().take_captures();
+  std::vector<Probe> probes = session_.captures().take_probes();
+  try {
+    captures_.reserve(captures_.size() + taken.size());
+    probes_.reserve(probes_.size() + probes.size());
+    for (CaptureRequest& request : taken) count_when_done(request, now);
+  } catch (const std::exception&) {
+    // Their callers wait for an answer.
+    for (const CaptureRequest& request : taken) request.done(protocol::error::internal());
+    for (const Probe& probe : probes) probe.fail(protocol::error::internal());
+    throw;
+  }
+  for (CaptureRequest& request : taken) {
     captures_.push_back(
         {.request = std::move(request), .requested = now, .deadline = now + capture_timeout});
   }
-  for (Probe& probe : session_.captures().take_probes()) {
-    probes_.push_back({.probe = std::move(probe), .requested = now});
-  }
+  for (Probe& probe : probes) probes_.push_back({.probe = std::move(probe), .requested = now});
   fail_captures_of_departed();
+}
+
+/// Unchanged where there is no memory for that.
+void FrameReaders::count_when_done(CaptureRequest& request, Clock::time_point requested) {
+  request.done = [done = request.done, requested,
+                  &measurements = measurements_](const Result<Capture>& result) {
+    if (result) {
+      measurements.captured(std::chrono::duration<double>(Clock::now() - requested).count());
+    } else {
+      measurements.capture_failed();
+    }
+    done(result);
+  };
 }
 
 /// A viewer in another session receives the error; one that has disconnected does not.
@@ -139,18 +163,15 @@ void FrameReaders::answer_probes(const ReadableFrame& frame) {
 
 bool FrameReaders::answer_captures(const ReadableFrame& frame) {
   const Clock::time_point now = Clock::now();
-  std::vector<PendingCapture> pending;
-  for (PendingCapture& capture : captures_) {
-    if (is_ready(capture, frame) && write(capture.request, frame)) continue;
-    if (now < capture.deadline) {
-      pending.push_back(std::move(capture));
-    } else {
-      capture.request.done(
-          protocol::error::not_ready("the view did not stay static long enough for the capture"));
-    }
-  }
-  captures_.swap(pending);
-  return captures_.size() != pending.size();
+  // In place: where memory runs out, those that are left are answered by fail_all().
+  const auto answered = std::erase_if(captures_, [&](PendingCapture& capture) {
+    if (is_ready(capture, frame) && write(capture.request, frame)) return true;
+    if (now < capture.deadline) return false;
+    capture.request.done(
+        protocol::error::not_ready("the view did not stay static long enough for the capture"));
+    return true;
+  });
+  return answered > 0;
 }
 
 bool FrameReaders::is_ready(const PendingCapture& capture, const ReadableFrame& frame) const {
@@ -193,11 +214,23 @@ bool FrameReaders::write(CaptureRequest& request, const ReadableFrame& frame) {
     }
     captured->marks = *std::move(marks);
   }
-  capture_writer_.post([request = std::move(request), captured, &written = written_] {
-    request.done(encoded(*captured, request));
-    written.notify();
-  });
+  post(std::make_shared<CaptureRequest>(std::move(request)), captured);
   return true;
+}
+
+/// Answers the request here where there is no memory for the task.
+void FrameReaders::post(const std::shared_ptr<CaptureRequest>& request,
+                        const std::shared_ptr<CapturedContent>& captured) {
+  try {
+    capture_writer_.post([request, captured, &written = written_] {
+      answer(*request, *captured);
+      written.notify();
+    });
+  } catch (const std::exception& failure) {
+    log_error({.session = session_.name()},
+              std::string("a capture could not be written: ") + failure.what());
+    request->done(protocol::error::internal());
+  }
 }
 
 void FrameReaders::fail_before_first_step() {
@@ -216,7 +249,10 @@ void FrameReaders::fail_before_first_step() {
 }
 
 void FrameReaders::fail_all(const protocol::Error& why) {
-  for (const PendingCapture& capture : captures_) capture.request.done(why);
+  for (const PendingCapture& capture : captures_) {
+    // What was on its way out when memory ran out has been answered.
+    if (capture.request.done) capture.request.done(why);
+  }
   captures_.clear();
   for (const PendingProbe& pending : probes_) pending.probe.fail(why);
   probes_.clear();

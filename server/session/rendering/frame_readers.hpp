@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -25,6 +26,8 @@ struct ReadableFrame {
 /// Whether a static view has all samples but those of a path traced reference that was not asked
 /// for (`reference.use=automatic`).
 bool lacks_reference_alone(const protocol::Settings& settings, const render::Frame& frame);
+
+struct CapturedContent;
 
 /// Captures and probes that wait for a frame of one session. For the render thread.
 class FrameReaders {
@@ -65,12 +68,15 @@ class FrameReaders {
     Clock::time_point requested;
   };
 
+  void count_when_done(CaptureRequest& request, Clock::time_point requested);
   void fail_captures_of_departed();
   bool is_ready(const PendingCapture& capture, const ReadableFrame& frame) const;
   bool comes_after_steps(const ReadableFrame& frame, std::optional<Ticket> ticket) const;
   /// Where this frame shows them.
   protocol::Result<stream::ImageMarks> marks_of(const ReadableFrame& frame);
   bool write(CaptureRequest& request, const ReadableFrame& frame);
+  void post(const std::shared_ptr<CaptureRequest>& request,
+            const std::shared_ptr<CapturedContent>& captured);
 
   Session& session_;
   Worker& capture_writer_;
