@@ -70,15 +70,15 @@ Result<Camera> SessionCamera::orbit(const protocol::CameraOrbit& request, const 
 Result<Camera> SessionCamera::fit(const protocol::CameraFit& request, const std::string& by) {
   const std::lock_guard lock(core_.mutex);
   if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
-  const scene::Pose pose =
-      scene::shown_pose(*core_.scene, nullptr, 0.0, core_.settings.view.explode);
-  scene::Bounds bounds = core_.settings.view.explode > 0.0f
-                             ? scene::posed_bounds(*core_.scene, pose)
-                             : core_.scene->bounds;
+  const float explode = core_.settings.view.explode;
+  scene::Bounds bounds;
   if (request.nodes) {
     if (const auto known = core_.nodes.check(*request.nodes, "nodes"); !known) return known.error();
+    const scene::Pose pose = scene::shown_pose(*core_.scene, nullptr, 0.0, explode);
     bounds = node_bounds(*core_.scene, pose, core_.nodes, *request.nodes);
     if (bounds.empty()) return protocol::error::invalid("nodes", "have no meshes to show");
+  } else {
+    bounds = scene::exploded_bounds(*core_.scene, explode);
   }
   core_.camera.fit(bounds, core_.aspect());
   return publish(by);

@@ -342,13 +342,6 @@ std::shared_ptr<Renderers> take_renderers(RenderContext& context, const RenderTa
   return renderers;
 }
 
-/// Of what the task shows, with its parts as far apart as it says.
-scene::Bounds shown_bounds(const scene::Scene& scene, const RenderTask& task) {
-  const float explode = task.settings.view.explode;
-  if (explode == 0.0f) return scene.bounds;
-  return scene::posed_bounds(scene, scene::shown_pose(scene, nullptr, 0.0, explode));
-}
-
 }  // namespace
 
 std::size_t expected_images(const RenderTask& task) {
@@ -363,7 +356,8 @@ void render_task(RenderContext& context, const RenderTask& task) {
     read = read_scene(context, task);
   }
   const scene::Scene& scene = read ? *read : *render::scene_of(*context.scene.resources);
-  const std::vector<Shot> shots = plan_shots(scene, shown_bounds(scene, task), request);
+  const scene::Bounds shown = scene::exploded_bounds(scene, task.settings.view.explode);
+  const std::vector<Shot> shots = plan_shots(scene, shown, request);
   const std::vector<PlannedFile> files = plan_files(context, task, shots);
   if (const std::string note = note_on_clip(scene, request); !note.empty()) {
     std::fprintf(stderr, "heliograph: %s: %s\n", request.scene.c_str(), note.c_str());

@@ -63,4 +63,9 @@ Pose shown_pose(const Scene& scene, const Clip* clip, double seconds, float amou
   return pose;
 }
 
+Bounds exploded_bounds(const Scene& scene, float amount) {
+  if (amount == 0.0f) return scene.bounds;
+  return posed_bounds(scene, shown_pose(scene, nullptr, 0.0, amount));
+}
+
 }  // namespace heliograph::scene

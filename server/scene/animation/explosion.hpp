@@ -35,4 +35,7 @@ Pose shown_pose(const Scene& scene, const Clip* clip, double seconds, float amou
 /// World bounds of what the scene shows in a pose.
 Bounds posed_bounds(const Scene& scene, const Pose& pose);
 
+/// The scene's bounds, exploded by `amount`.
+Bounds exploded_bounds(const Scene& scene, float amount);
+
 }  // namespace heliograph::scene

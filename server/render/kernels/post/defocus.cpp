@@ -56,7 +56,7 @@ struct CirclePoint {
   float away;
 };
 
-/// Of the pixels of one frame. Noise has so many levels here that no pattern is seen.
+/// The circles of all pixels. Noise has so many levels here that no pattern is seen.
 class Circles {
  public:
   static constexpr std::size_t levels = 256;
@@ -81,6 +81,12 @@ class Circles {
  private:
   std::vector<CirclePoint> points_;
 };
+
+/// The same in every frame.
+const Circles& all_circles() {
+  static const Circles circles;
+  return circles;
+}
 
 /// The colours of a pixel: denoised, and where there are any, noisy.
 struct Light {
@@ -239,7 +245,7 @@ class Gather {
   glm::uvec2 tiles_;
   int tile_;
   float noise_shift_;
-  Circles circles_;
+  const Circles& circles_ = all_circles();
   std::vector<Point> points_;
 };
 
