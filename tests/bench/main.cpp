@@ -1,12 +1,14 @@
 // Times every pass of a frame, relative to the limits of the machine.
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <regex>
 
 #include "gpu/frame_plan/frame_size.hpp"
@@ -38,6 +40,7 @@ struct Options {
   float draw_scale = 1.0f;
   int jpeg = 0;  // quality; 0: frames come as pixels
   bool still = false;
+  bool overlap = false;
   bool shaders = false;
 };
 
@@ -135,8 +138,34 @@ struct Run {
     if (!accepted) throw std::runtime_error(accepted.error().message);
   }
 
+  /// Begins a frame, before the one that has begun is finished where that can be, and finishes
+  /// that. Frames take the time between their ends.
+  std::optional<render::Frame> next_overlapping() {
+    std::optional<render::Frame> frame;
+    if (begun && !renderer.can_begin_another()) frame = finish();
+    renderer.begin({});
+    if (begun && !frame) return finish();
+    begun = true;
+    return frame;
+  }
+  void finish_all() {
+    if (std::exchange(begun, false)) renderer.finish();
+  }
+
   render::Renderer renderer;
   Table table;
+  bool begun = false;
+
+ private:
+  render::Frame finish() {
+    render::Frame frame = renderer.finish();
+    const auto end = std::chrono::steady_clock::now();
+    frame.milliseconds =
+        std::chrono::duration<float, std::milli>(end - std::exchange(finished_at_, end)).count();
+    return frame;
+  }
+
+  std::chrono::steady_clock::time_point finished_at_;
 };
 
 /// The bare loop for an iteration of the blur in two halves, such as "visibility.atrous.3", or
@@ -194,15 +223,17 @@ nlohmann::json measure(render::Engine& engine, RecordingTracer& tracer, const sc
   Run run(engine, resources, extent, settings);
   run.renderer.set_draw_scale(options.draw_scale);
   if (options.jpeg > 0) run.renderer.request_jpeg(options.jpeg);
+  if (options.overlap) run.renderer.keep_buffers(false);
   const scene::Camera camera = first_camera(scene, extent);
   for (int i = 0; i < options.warm_up + options.frames; ++i) {
     for (Run* each : {&run, shaders ? &*shaders : nullptr}) {
       if (!each) continue;
       each->renderer.set_camera(options.still ? camera : swung(camera, i));
-      const render::Frame frame = each->renderer.render();
-      if (i >= options.warm_up) each->table.add(frame);
+      const auto frame = options.overlap ? each->next_overlapping() : each->renderer.render();
+      if (i >= options.warm_up && frame) each->table.add(*frame);
     }
   }
+  run.finish_all();
   tracer.set_recording(true);
   run.renderer.set_camera(options.still ? camera : swung(camera, options.warm_up + options.frames));
   run.renderer.render();
@@ -287,6 +318,8 @@ int main(int argc, char** argv) {
   app.add_option("--output", options.output, "also write the results to this file, as JSON");
   app.add_flag("--shaders", options.shaders, "also render every frame without host kernels");
   app.add_flag("--still", options.still, "static camera");
+  app.add_flag("--overlap", options.overlap,
+               "a GPU has the next frame before it is done with the one before, as when streaming");
   CLI11_PARSE(app, argc, argv);
   try {
     run(options);

@@ -1,5 +1,6 @@
 #include "gpu/device/device.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -224,11 +225,19 @@ std::uint64_t Device::submit(VkCommandBuffer commands) const {
 }
 
 void Device::wait(std::uint64_t submitted) const {
+  while (!wait_for(submitted, std::chrono::hours(1))) continue;
+}
+
+bool Device::wait_for(std::uint64_t submitted, std::chrono::nanoseconds time) const {
   VkSemaphoreWaitInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO};
   info.semaphoreCount = 1;
   info.pSemaphores = &timeline_;
   info.pValues = &submitted;
-  check(vkWaitSemaphores(handle_, &info, UINT64_MAX), "run commands on the device");
+  const auto most = static_cast<std::uint64_t>(std::max<std::int64_t>(time.count(), 0));
+  const VkResult result = vkWaitSemaphores(handle_, &info, most);
+  if (result == VK_TIMEOUT) return false;
+  check(result, "run commands on the device");
+  return true;
 }
 
 void Device::submit_once(const std::function<void(VkCommandBuffer)>& record) const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -53,6 +54,8 @@ class Device {
   /// Until the device is done with what submit() returned this for, and with all before it. Thread
   /// safe.
   void wait(std::uint64_t submitted) const;
+  /// Likewise, but no longer than that. @returns whether it is done
+  bool wait_for(std::uint64_t submitted, std::chrono::nanoseconds time) const;
   /// Records into a fresh command buffer, submits it and waits: for set-up work. Thread safe.
   void submit_once(const std::function<void(VkCommandBuffer)>& record) const;
 

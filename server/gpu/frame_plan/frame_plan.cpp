@@ -31,7 +31,10 @@ FramePlan::FramePlan(const Device& device, VkExtent2D extent)
 
 FramePlan::~FramePlan() {
   try {
-    wait();  // what a frame that has begun uses is freed now
+    for (const Begun& begun : begun_) {  // what they use is freed now
+      if (begun.submitted) device_.wait(*begun.submitted);
+    }
+    wait();
   } catch (const std::runtime_error&) {
     // The device is lost: it uses nothing any more.
   }
@@ -83,6 +86,18 @@ BufferRef FramePlan::buffer(std::string name, VkDeviceSize size, VkBufferUsageFl
   return {add(std::move(resource))};
 }
 
+BufferRef FramePlan::returned(std::string name, VkDeviceSize size, VkBufferUsageFlags usage) {
+  Resource resource{.name = std::move(name)};
+  for (std::size_t slot = 0; slot < 2; ++slot) {
+    const bool own = slot == 0 || !device_.is_cpu();
+    resource.owned_buffers[slot] =
+        own ? std::make_shared<const Buffer>(device_, resource.name, size, usage, Memory::readback)
+            : resource.owned_buffers[0];
+    resource.buffers[slot] = resource.owned_buffers[slot].get();
+  }
+  return {add(std::move(resource))};
+}
+
 BufferRef FramePlan::import(const Buffer& buffer) {
   Resource resource{.name = buffer.name()};
   resource.buffers = {&buffer, &buffer};
@@ -98,8 +113,9 @@ ImageRef FramePlan::import(const Image& image, std::optional<std::uint32_t> leve
   return {add(std::move(resource))};
 }
 
-void FramePlan::share_set(std::uint32_t number, VkDescriptorSet set, std::uint32_t side) {
-  shared_sets_.push_back({number, side, set});
+void FramePlan::share_set(std::uint32_t number, const std::array<VkDescriptorSet, 2>& sets,
+                          std::uint32_t side) {
+  shared_sets_.push_back({number, side, sets});
 }
 
 void FramePlan::reduced(std::uint32_t side, const std::function<void()>& declare) {
@@ -207,18 +223,18 @@ void FramePlan::compile() {
     }
     check_pass(pass);
   }
-  derive_barriers();
+  order_passes();
   list_views();
   make_descriptor_sets();
-  std::uint32_t submits = 1;
+  std::uint32_t submits = 2;
   for (const Pass& pass : passes_) {
     submits += timed_by_clock() || pass.is_host_only() ? 1 : 0;
   }
-  commands_.resize(submits);
+  commands_.resize(2 * std::size_t{submits});
   VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
   info.commandPool = command_pool_;
   info.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
-  info.commandBufferCount = submits;
+  info.commandBufferCount = 2 * submits;
   check(vkAllocateCommandBuffers(device_.handle(), &info, commands_.data()),
         "allocate the frame's command buffers");
   VkQueryPoolCreateInfo queries{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
@@ -226,7 +242,9 @@ void FramePlan::compile() {
   queries.queryCount = static_cast<std::uint32_t>(passes_.size() * 2 + 1);
   check(vkCreateQueryPool(device_.handle(), &queries, nullptr, &queries_), "create the timers");
   for (const Pass& pass : passes_) timings_.push_back({pass.name, pass.is_host_only(), 0.0f});
-  if (read_back_.index != ImageRef().index) readback_ = Readback(device_, latest(read_back_));
+  if (read_back_.index != ImageRef().index) {
+    for (Readback& readback : readbacks_) readback = Readback(device_, latest(read_back_));
+  }
   compiled_ = true;
 }
 
@@ -273,19 +291,23 @@ const Image& FramePlan::get(ImageRef image) const {
   return physical(image.index, parity_);
 }
 const Image& FramePlan::latest(ImageRef image) const {
-  return physical(image.index, parity_ ^ 1);
+  return physical(image.index, finished_);
 }
 const Buffer& FramePlan::get(BufferRef buffer) const {
   return *resources_[buffer.index].buffers[parity_];
 }
+const Buffer& FramePlan::latest(BufferRef buffer) const {
+  return *resources_[buffer.index].buffers[finished_];
+}
 
 std::vector<std::uint8_t> FramePlan::read() {
-  if (!readback_) return {};
-  if (!std::exchange(came_back_, true) && readback_.copies()) {
+  const Readback& readback = readbacks_[finished_];
+  if (!readback) return {};
+  if (!std::exchange(came_back_, true) && readback.copies()) {
     device_.submit_once(
-        [this](VkCommandBuffer commands) { readback_.record(commands, latest(read_back_)); });
+        [&](VkCommandBuffer commands) { readback.record(commands, latest(read_back_)); });
   }
-  return readback_.read<std::uint8_t>(latest(read_back_));
+  return readback.read<std::uint8_t>(latest(read_back_));
 }
 
 void FramePlan::reset(const History& history) {

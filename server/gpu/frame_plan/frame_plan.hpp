@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <cstring>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -16,6 +18,7 @@
 
 #include "gpu/frame_plan/bindings.hpp"
 #include "gpu/frame_plan/frame_size.hpp"
+#include "gpu/frame_plan/pass_order.hpp"
 #include "gpu/memory/readback.hpp"
 #include "gpu/pipelines/ray_pipeline.hpp"
 #include "gpu/pipelines/shader.hpp"
@@ -153,8 +156,9 @@ class PassBuilder {
 
 /// An ordered list of passes with what each reads and writes, from which barriers, timestamps,
 /// labels, descriptor sets, the list of views and the history swap follow. Passes run in the order
-/// declared. Images stay in GENERAL. A host pass runs on the processor after everything before it
-/// is done; on a CPU device it sees images and buffers through their mapping. Work goes to the
+/// declared on devices that are processors; others work on all passes at a time that need nothing
+/// of each other. Images stay in GENERAL. A host pass runs on the processor after everything before
+/// it is done; on a CPU device it sees images and buffers through their mapping. Work goes to the
 /// device when a host pass or the caller waits for it: a frame of host passes alone submits
 /// nothing.
 class FramePlan {
@@ -214,14 +218,24 @@ class FramePlan {
   History history(std::string_view name, VkFormat format, VkImageUsageFlags extra_usage = 0,
                   FrameSize size = each_pixel());
   BufferRef buffer(std::string name, VkDeviceSize size, VkBufferUsageFlags usage, Memory memory);
+  /// A buffer that each frame writes for the host, which reads it as latest() after finish(), also
+  /// while the device works on another frame.
+  BufferRef returned(std::string name, VkDeviceSize size, VkBufferUsageFlags usage);
   /// Resources owned elsewhere, which must outlive the plan.
   BufferRef import(const Buffer& buffer);
   /// The whole image for sampling (`level` absent, with `sampler`) or one level for storage.
   ImageRef import(const Image& image, std::optional<std::uint32_t> level, VkSampler sampler);
 
   /// A descriptor set of the caller's for every program that declares set `number`, of passes that
-  /// are reduced() by `side`, or of all that no other set is for.
-  void share_set(std::uint32_t number, VkDescriptorSet set, std::uint32_t side = 1);
+  /// are reduced() by `side`, or of all that no other set is for. `sets`: one for each slot().
+  void share_set(std::uint32_t number, const std::array<VkDescriptorSet, 2>& sets,
+                 std::uint32_t side = 1);
+  void share_set(std::uint32_t number, VkDescriptorSet set, std::uint32_t side = 1) {
+    share_set(number, {set, set}, side);
+  }
+  /// Of the frame that begins next: what the host writes for a frame is there for each of two,
+  /// since the device may still work on the one before.
+  std::uint32_t slot() const { return parity_; }
 
   PassBuilder pass(std::string name, const ComputeProgram& program);
   PassBuilder pass(std::string name, ProgramSource program);
@@ -261,16 +275,24 @@ class FramePlan {
   /// The first part of execute(): runs the passes of the host and gives the device its work. Until
   /// finish() nothing of the plan changes and nothing is read.
   bool begin(const std::function<bool()>& canceled = {});
-  /// The second part: waits for the device.
+  /// Whether begin() may be called before finish(): where the device works on one frame, and the
+  /// passes of the next need not be timed. What the device reads, the host may not change then, but
+  /// for what is there for each slot().
+  bool can_begin_another() const;
+  /// The second part: waits for the device to finish the frame that has begun first.
   void finish();
   /// Whether the device may still work on a frame that has begun.
-  bool in_flight() const { return submitted_.has_value(); }
+  bool in_flight() const { return !begun_.empty() && begun_.front().submitted; }
+  /// Waits for the frame that has begun first, but no longer. @returns whether it is done
+  bool wait_for(std::chrono::nanoseconds time) const;
   /// Whether the frame that runs is canceled: what a pass writes is not read any more. Thread safe.
   bool is_canceled() const;
   /// The frame that just ran, as read_back() asked for it: level 0, rows tightly packed. Where it
   /// did not come back by itself, the device copies it now.
   std::vector<std::uint8_t> read();
-  /// Of every pass, in order; below 0 where it did not run.
+  /// Of every pass, in the order declared; below 0 where it did not run. Devices that overlap
+  /// passes run them one after the other where they are timed: in one of sixteen frames, and in the
+  /// first with other passes. In frames between, the times are those of that frame.
   const std::vector<PassTiming>& timings() const { return timings_; }
   /// The work behind the timings of the frame that just ran, in the same order. Copies counts back
   /// from the device: for measurements, not for every frame.
@@ -278,8 +300,10 @@ class FramePlan {
 
   const Image& get(ImageRef image) const;  // this frame's image of a history
   const Buffer& get(BufferRef buffer) const;
-  /// The image written by the frame that just ran.
+  /// The image written by the frame that was finished last.
   const Image& latest(ImageRef image) const;
+  /// Likewise of returned().
+  const Buffer& latest(BufferRef buffer) const;
 
   struct View {
     std::string name;
@@ -336,7 +360,7 @@ class FramePlan {
   bool run_passes();
   void run_host_kernel(const Pass& pass) const;
   void check_pass(const Pass& pass) const;
-  void derive_barriers();
+  void order_passes();
   void make_descriptor_sets();
   void list_views();
   void record(const Pass& pass, VkCommandBuffer commands, std::uint32_t query);
@@ -346,6 +370,9 @@ class FramePlan {
   /// Whether every pass is a submit of its own, timed from outside: drivers for processors write
   /// timestamps while they record, as soon as anything was ever drawn.
   bool timed_by_clock() const;
+  VkCommandBuffer frame_commands(std::size_t submit) const {
+    return commands_[parity_ * (commands_.size() / 2) + submit];
+  }
   /// The command buffer of what comes next, begun with its first command.
   VkCommandBuffer recorder();
   /// Gives the device what was recorded since the last submit, if anything.
@@ -353,6 +380,9 @@ class FramePlan {
   /// For all that was submitted.
   void wait();
   void flush();  // both
+  bool timing_is_due() const;
+  void choose_timing();
+  std::vector<bool> running_passes() const;
   void read_timers();
   const Image& physical(std::uint32_t index, std::uint32_t parity) const;
   VkImageView physical_view(std::uint32_t index, std::uint32_t parity) const;
@@ -361,11 +391,12 @@ class FramePlan {
   VkExtent2D extent_;
   VkExtent2D drawn_;
   std::vector<Resource> resources_;
-  std::vector<Pass> passes_;
+  std::vector<Pass> passes_;  // as declared
+  PassOrder order_;           // in which they run
   struct SharedSet {
     std::uint32_t number;
     std::uint32_t side;
-    VkDescriptorSet set;
+    std::array<VkDescriptorSet, 2> sets;  // by slot()
   };
   std::vector<SharedSet> shared_sets_;
   std::uint32_t side_ = 1;  // of the squares that what is declared now has one texel for
@@ -373,15 +404,26 @@ class FramePlan {
   Sampler default_sampler_;
   ImageRef read_back_;
   std::function<bool()> read_back_when_;  // empty: in every frame
-  Readback readback_;
-  bool came_back_ = false;  // with the frame that runs or just ran
+  std::array<Readback, 2> readbacks_;     // by slot()
+  bool came_back_ = false;                // with the frame that was finished last
   VkCommandPool command_pool_ = VK_NULL_HANDLE;
-  std::vector<VkCommandBuffer> commands_;   // one for each submit of a frame
+  std::vector<VkCommandBuffer> commands_;   // one for each submit of a frame, slot by slot
   std::size_t submits_ = 0;                 // of this frame so far
   bool recording_ = false;                  // into the next
   std::optional<std::uint64_t> submitted_;  // what was last submitted and not waited for
-  bool begun_ = false;
+  /// A frame that has begun.
+  struct Begun {
+    std::optional<std::uint64_t> submitted;  // its last work for the device
+    std::uint32_t slot = 0;
+    bool came_back = false;
+    bool timed = false;
+  };
+  std::deque<Begun> begun_;     // at most two, the older one first
+  std::uint32_t finished_ = 1;  // slot of the frame that was finished last
   VkQueryPool queries_ = VK_NULL_HANDLE;
+  bool times_passes_ = false;       // by queries, in the frame that runs
+  std::vector<bool> timed_passes_;  // that ran in the newest frame with timers
+  std::uint32_t frames_since_timed_ = 0;
   std::vector<PassTiming> timings_;
   std::vector<View> views_;
   /// The two blocks of all histories, which change parts after every frame; null where histories

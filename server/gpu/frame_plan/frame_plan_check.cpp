@@ -1,8 +1,10 @@
-// What follows from declared reads and writes before anything runs: checks, barriers, views.
+// What follows from declared reads and writes before anything runs: checks, order, views.
 
 #include <algorithm>
 #include <cstring>
+#include <map>
 #include <set>
+#include <utility>
 
 #include "gpu/frame_plan/frame_plan_parts.hpp"
 
@@ -24,13 +26,6 @@ const char* type_text(VkDescriptorType type) {
     default:
       return "something else";
   }
-}
-
-bool reads(const Use& use) {
-  return use.access != Access::write;
-}
-bool writes(const Use& use) {
-  return use.access != Access::read;
 }
 
 bool is_image(VkDescriptorType type) {
@@ -115,32 +110,29 @@ void FramePlan::check_pass(const Pass& pass) const {
   if (pass.is_raster && pass.colors.empty() && !pass.depth) fail("it has no attachment");
 }
 
-void FramePlan::derive_barriers() {
-  std::set<std::uint32_t> read;
-  std::set<std::uint32_t> written;
-  for (Pass& pass : passes_) {
-    const auto uses = pass.all_uses();
-    const bool hazard = std::any_of(uses.begin(), uses.end(), [&](const Use& use) {
-      return written.contains(use.resource) || (writes(use) && read.contains(use.resource));
-    });
-    // A submit lies before and after a host pass, which orders everything.
-    if (hazard || !pass.program) {
-      pass.barrier_before = pass.program != nullptr;
-      read.clear();
-      written.clear();
-    }
-    if (!pass.program) continue;
-    for (const auto& use : uses) {
-      if (reads(use)) read.insert(use.resource);
-      if (writes(use)) written.insert(use.resource);
-    }
+void FramePlan::order_passes() {
+  // What is imported twice is one resource.
+  std::map<std::pair<const Image*, const Buffer*>, std::uint32_t> known;
+  const auto physical = [&](Use use) {
+    const Resource& resource = resources_[use.resource];
+    use.resource =
+        known.try_emplace({resource.images[0], resource.buffers[0]}, use.resource).first->second;
+    return use;
+  };
+  std::vector<PassUses> all;
+  for (const Pass& pass : passes_) {
+    std::vector<Use> uses = pass.all_uses();
+    std::ranges::transform(uses, uses.begin(), physical);
+    all.push_back({std::move(uses), pass.program == nullptr});
   }
+  // Where every pass is a submit of its own, there is nothing to overlap.
+  order_ = timed_by_clock() ? declared_order(all) : overlapping_order(all);
 }
 
 std::vector<std::string> FramePlan::barriers() const {
   std::vector<std::string> names;
-  for (const Pass& pass : passes_) {
-    if (pass.barrier_before) names.push_back(pass.name);
+  for (const std::uint32_t pass : order_.passes) {
+    if (order_.barrier_before[pass]) names.push_back(passes_[pass].name);
   }
   return names;
 }

@@ -11,6 +11,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
+/// Timers keep passes from running at the same time, so that few frames have them.
+constexpr std::uint32_t timed_frame_interval = 16;
+/// The device begins with so many passes while the others are recorded.
+constexpr std::size_t passes_submitted_first = 8;
+
 float since(Clock::time_point start) {
   return std::chrono::duration<float, std::milli>(Clock::now() - start).count();
 }
@@ -33,31 +38,72 @@ bool FramePlan::execute(const std::function<bool()>& canceled) {
 
 bool FramePlan::begin(const std::function<bool()>& canceled) {
   if (!compiled_) throw GpuError("a frame plan runs only after compile()");
-  if (begun_) throw GpuError("a frame begins before the one before it is finished");
-  device_.check_presence();
-  if (!timed_by_clock()) {
-    vkResetQueryPool(device_.handle(), queries_, 0, static_cast<std::uint32_t>(passes_.size() * 2));
+  if (begun_.size() > 1 || (begun_.size() == 1 && !in_flight())) {
+    throw GpuError("a frame begins before the one before it is finished");
   }
+  device_.check_presence();
+  choose_timing();
   submits_ = 0;
   recording_ = false;
   canceled_ = false;
   // Where passes are timed by the clock, nothing is recorded that was not submitted.
   asks_canceled_ = canceled && timed_by_clock() ? &canceled : nullptr;
+  // The frame before may still write what this one reads.
+  if (!begun_.empty()) full_barrier(recorder());
   const bool finished = run_passes();
   asks_canceled_ = nullptr;
   if (!finished) return false;
-  came_back_ = readback_ && (!read_back_when_ || read_back_when_());
-  if (came_back_ && readback_.copies()) readback_.record(recorder(), get(read_back_));
+  const Readback& readback = readbacks_[parity_];
+  const bool comes_back = readback && (!read_back_when_ || read_back_when_());
+  if (comes_back && readback.copies()) readback.record(recorder(), get(read_back_));
   submit();
-  begun_ = true;
+  begun_.push_back({.submitted = std::exchange(submitted_, std::nullopt),
+                    .slot = parity_,
+                    .came_back = comes_back,
+                    .timed = times_passes_});
+  parity_ ^= 1;
   return true;
 }
 
+bool FramePlan::can_begin_another() const {
+  return begun_.size() == 1 && in_flight() && !timing_is_due();
+}
+
 void FramePlan::finish() {
-  if (!std::exchange(begun_, false)) throw GpuError("a frame is finished that has not begun");
-  wait();
-  if (!timed_by_clock()) read_timers();
-  parity_ ^= 1;
+  if (begun_.empty()) throw GpuError("a frame is finished that has not begun");
+  const Begun begun = begun_.front();
+  begun_.pop_front();
+  if (begun.submitted) device_.wait(*begun.submitted);
+  if (begun.timed) read_timers();
+  finished_ = begun.slot;
+  came_back_ = begun.came_back;
+}
+
+bool FramePlan::wait_for(std::chrono::nanoseconds time) const {
+  return !in_flight() || device_.wait_for(*begun_.front().submitted, time);
+}
+
+std::vector<bool> FramePlan::running_passes() const {
+  std::vector<bool> running(passes_.size());
+  std::transform(passes_.begin(), passes_.end(), running.begin(),
+                 [](const Pass& pass) { return !pass.condition || pass.condition(); });
+  return running;
+}
+
+/// Where passes run that did not in the frame that was timed last, or the other way round, nothing
+/// is known of their times.
+bool FramePlan::timing_is_due() const {
+  return frames_since_timed_ >= timed_frame_interval || running_passes() != timed_passes_;
+}
+
+/// Of the frame that begins. Timers are for one frame at a time.
+void FramePlan::choose_timing() {
+  times_passes_ = !timed_by_clock() && begun_.empty() && timing_is_due();
+  ++frames_since_timed_;
+  if (!times_passes_) return;
+  frames_since_timed_ = 1;
+  timed_passes_ = running_passes();
+  vkResetQueryPool(device_.handle(), queries_, 0, static_cast<std::uint32_t>(passes_.size() * 2));
 }
 
 bool FramePlan::is_canceled() const {
@@ -72,13 +118,14 @@ bool FramePlan::is_canceled() const {
 /// Whether none of them was canceled.
 bool FramePlan::run_passes() {
   bool barrier = false;  // of passes left out: those behind them rely on it
-  for (std::size_t i = 0; i < passes_.size(); ++i) {
+  std::size_t recorded = 0;
+  for (const std::uint32_t i : order_.passes) {
     const Pass& pass = passes_[i];
-    timings_[i].milliseconds = -1.0f;  // not run
     if (i >= cancelable_) asks_canceled_ = nullptr;
     if (is_canceled()) return false;
-    barrier |= pass.barrier_before;
+    barrier |= order_.barrier_before[i];
     if (pass.condition && !pass.condition()) {
+      timings_[i].milliseconds = -1.0f;  // not run
       barrier |= !pass.program;
       continue;
     }
@@ -86,9 +133,13 @@ bool FramePlan::run_passes() {
     timings_[i].host = on_host;
     const auto start = Clock::now();
     if (!on_host) {
-      if (std::exchange(barrier, false)) full_barrier(recorder());
-      record(pass, recorder(), static_cast<std::uint32_t>(i * 2));
-      if (!timed_by_clock()) continue;
+      // A pass is timed alone.
+      if (std::exchange(barrier, false) || times_passes_) full_barrier(recorder());
+      record(pass, recorder(), i * 2);
+      if (!timed_by_clock()) {
+        if (++recorded == passes_submitted_first) submit();
+        continue;
+      }
     }
     flush();
     if (!on_host) {
@@ -124,7 +175,7 @@ void FramePlan::run_host_kernel(const Pass& pass) const {
 }
 
 VkCommandBuffer FramePlan::recorder() {
-  const VkCommandBuffer commands = commands_[submits_];
+  const VkCommandBuffer commands = frame_commands(submits_);
   if (std::exchange(recording_, true)) return commands;
   VkCommandBufferBeginInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
   info.flags = VK_COMMAND_BUFFER_USAGE_ONE_TIME_SUBMIT_BIT;
@@ -143,7 +194,7 @@ void FramePlan::wait() {
 
 void FramePlan::submit() {
   if (!std::exchange(recording_, false)) return;
-  const VkCommandBuffer commands = commands_[submits_++];
+  const VkCommandBuffer commands = frame_commands(submits_++);
   // Mapped memory is read after this submit, by a host pass or by the caller that takes the frame.
   VkMemoryBarrier2 barrier{VK_STRUCTURE_TYPE_MEMORY_BARRIER_2};
   barrier.srcStageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
@@ -164,7 +215,7 @@ void FramePlan::record(const Pass& pass, VkCommandBuffer commands, std::uint32_t
     label.pLabelName = pass.name.c_str();
     vkCmdBeginDebugUtilsLabelEXT(commands, &label);
   }
-  if (!timed_by_clock()) {
+  if (times_passes_) {
     vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_, query);
   }
   if (pass.is_raster) {
@@ -182,7 +233,7 @@ void FramePlan::record(const Pass& pass, VkCommandBuffer commands, std::uint32_t
                     groups(threads.height, pass.local_size.height), pass.layers);
     }
   }
-  if (!timed_by_clock()) {
+  if (times_passes_) {
     vkCmdWriteTimestamp2(commands, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, queries_, query + 1);
   }
   if (device_.labels()) vkCmdEndDebugUtilsLabelEXT(commands);
@@ -212,7 +263,7 @@ void FramePlan::bind_shared_sets(const Pass& pass, VkCommandBuffer commands) {
     });
     if (replaced ? shared.side != pass.side : shared.side != 1) continue;
     vkCmdBindDescriptorSets(commands, pass.bind_point(), pass.program->layout(), shared.number, 1,
-                            &shared.set, 0, nullptr);
+                            &shared.sets[parity_], 0, nullptr);
   }
 }
 

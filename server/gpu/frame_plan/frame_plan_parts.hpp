@@ -72,7 +72,6 @@ struct FramePlan::Pass {
   std::function<bool()> condition;
   std::vector<std::uint32_t> conditions;  // numbers of those that it is made of
 
-  bool barrier_before = false;
   std::array<VkDescriptorSet, 2> sets{};
 
   VkPipelineBindPoint bind_point() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -107,7 +108,12 @@ class Renderer {
   bool begin(const std::function<bool()>& canceled);
   /// Whether the device still works on a frame that has begun: finish() would wait.
   bool in_flight() const;
-  /// The second part.
+  /// Whether the next frame may begin before this one is finished, on GPUs: where nothing but the
+  /// camera was changed since.
+  bool can_begin_another() const;
+  /// Waits for the frame that has begun first, but no longer. @returns whether it is done
+  bool wait_for(std::chrono::nanoseconds time) const;
+  /// The second part, of the frame that has begun first.
   Frame finish();
 
   /// The work behind the last frame's pass times; slow, for measurements.

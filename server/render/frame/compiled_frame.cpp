@@ -1,5 +1,6 @@
 #include "render/frame/compiled_frame.hpp"
 
+#include <array>
 #include <stdexcept>
 
 #include "render/frame/buffer_list.hpp"
@@ -12,11 +13,11 @@
 namespace heliograph::render {
 
 CompiledFrame::CompiledFrame(const Engine::Parts& parts, const FrameInputs& in,
-                             const FrameConstantsBuffers& constants_buffers, VkExtent2D extent,
+                             const FrameConstantsSlots& constants_buffers, VkExtent2D extent,
                              bool keeps_buffers, const int& jpeg_quality)
     : inputs(in),
       background(in.moving.environment().background(in.settings.background)),
-      pool(parts.device, 3, 24),
+      pool(parts.device, 5, 48),
       plan(parts.device, extent) {
   plan.use_host_kernels(parts.host_kernels);
   plan.share_memory();
@@ -36,18 +37,23 @@ CompiledFrame::CompiledFrame(const Engine::Parts& parts, const FrameInputs& in,
 }
 
 void CompiledFrame::share_sets(const Engine::Parts& parts,
-                               const FrameConstantsBuffers& constants_buffers) {
+                               const FrameConstantsSlots& constants_buffers) {
   const EnvironmentView environment =
       inputs.moving.environment().view(inputs.settings.environment.separate_sun);
   const gpu::Image& seen = background ? background->image : environment.background;
-  const auto share = [&](const gpu::Buffer& constants, std::uint32_t side) {
-    const VkDescriptorSet set = pool.allocate(parts.programs.frame_layout.handle());
-    write_frame_set(parts, set, constants, inputs.tables.lights,
-                    {seen, environment.maps, environment.sun});
-    plan.share_set(frame_set, set, side);
+  const auto share = [&](const auto& constants_of, std::uint32_t side) {
+    std::array<VkDescriptorSet, 2> sets{};
+    for (std::size_t slot = 0; slot < sets.size(); ++slot) {
+      sets[slot] = pool.allocate(parts.programs.frame_layout.handle());
+      write_frame_set(parts, sets[slot], constants_of(constants_buffers[slot]),
+                      inputs.tables.lights, {seen, environment.maps, environment.sun});
+    }
+    plan.share_set(frame_set, sets, side);
   };
-  share(constants_buffers.whole, 1);
-  share(constants_buffers.half, 2);
+  share(
+      [](const FrameConstantsBuffers& buffers) -> auto& { return buffers.whole; }, 1);
+  share(
+      [](const FrameConstantsBuffers& buffers) -> auto& { return buffers.half; }, 2);
   const VkDescriptorSet tables = pool.allocate(parts.programs.scene_layout.handle());
   write_scene_set(parts.device, tables, inputs.tables, inputs.scene.texture_heap,
                   inputs.moving.layers(), inputs.moving.emissive());

@@ -21,8 +21,8 @@ struct CompiledFrame {
   /// be read after a frame, or just the output and the histories. `jpeg_quality`: of each frame, 0
   /// where its pixels come back.
   CompiledFrame(const Engine::Parts& parts, const FrameInputs& inputs,
-                const FrameConstantsBuffers& constants_buffers, VkExtent2D extent,
-                bool keeps_buffers, const int& jpeg_quality);
+                const FrameConstantsSlots& constants_buffers, VkExtent2D extent, bool keeps_buffers,
+                const int& jpeg_quality);
 
   /// An image as of the last frame, and how much of it, from the first texel, was drawn.
   struct DrawnImage {
@@ -43,7 +43,7 @@ struct CompiledFrame {
   std::vector<BufferInfo> buffers;       // that a view or a capture may name, the output first
 
  private:
-  void share_sets(const Engine::Parts& parts, const FrameConstantsBuffers& constants_buffers);
+  void share_sets(const Engine::Parts& parts, const FrameConstantsSlots& constants_buffers);
   void list_buffers();
 };
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "gpu/memory/buffer.hpp"
 #include "gpu/memory/image.hpp"
 #include "protocol/settings/settings.hpp"
@@ -40,5 +42,8 @@ struct FrameConstantsBuffers {
   gpu::Buffer whole;
   gpu::Buffer half;  // at_half_size()
 };
+
+/// By gpu::FramePlan::slot().
+using FrameConstantsSlots = std::array<FrameConstantsBuffers, 2>;
 
 }  // namespace heliograph::render

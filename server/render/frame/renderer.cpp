@@ -201,19 +201,19 @@ std::optional<Frame> Renderer::render(const std::function<bool()>& canceled) {
 
 bool Renderer::begin(const std::function<bool()>& canceled) {
   State& state = *state_;
-  state.begun = {.start = std::chrono::steady_clock::now()};
+  State::Begun begun{.start = std::chrono::steady_clock::now()};
   state.use_newest_shaders();
   CompiledFrame& compiled = state.frame_plan();
-  state.begun.new_buffers = std::exchange(state.new_plan, false);
-  state.jpeg_quality = state.next_jpeg_quality();
+  begun.new_buffers = std::exchange(state.new_plan, false);
+  begun.jpeg_quality = state.jpeg_quality = state.next_jpeg_quality();
   compiled.has_frame = false;
   state.stale = false;
   state.has_buffers = false;
   compiled.plan.keep_images(state.buffers_needed());
   if (state.pose()) {
     const auto posed = std::chrono::steady_clock::now();
-    const std::chrono::duration<float, std::milli> posing = posed - state.begun.start;
-    state.begun.posing = posing.count();
+    const std::chrono::duration<float, std::milli> posing = posed - begun.start;
+    begun.posing = posing.count();
   }
   if (!state.settings.accumulation.enabled) state.clock.samples = 0;
   if (state.reference_takes_over()) state.clock.hybrid_samples = state.clock.samples;
@@ -221,7 +221,11 @@ bool Renderer::begin(const std::function<bool()>& canceled) {
   const bool had_previous = state.has_previous;
   const std::uint32_t age = std::exchange(state.clock.age, had_previous ? state.clock.age + 1 : 0);
   state.make_constants(before);
-  if (compiled.plan.begin(canceled)) return true;
+  if (compiled.plan.begin(canceled)) {
+    state.begun.push_back(begun);
+    state.count_sample();
+    return true;
+  }
   state.constants = before;
   state.has_previous = had_previous;
   state.clock.age = age;
@@ -234,29 +238,36 @@ bool Renderer::in_flight() const {
   return state_->compiled && state_->compiled->plan.in_flight();
 }
 
+bool Renderer::can_begin_another() const {
+  return state_->can_begin_another();
+}
+
+bool Renderer::wait_for(std::chrono::nanoseconds time) const {
+  return !state_->compiled || state_->compiled->plan.wait_for(time);
+}
+
 Frame Renderer::finish() {
   State& state = *state_;
   CompiledFrame& compiled = *state.compiled;
   compiled.plan.finish();
-  compiled.has_frame = true;
-  state.has_buffers = compiled.plan.keeps_images();
-  if (state.clock.samples == 0) {
-    state.clock.first_counts = !leaves_samples_out(compiled.inputs);
-  }
-  ++state.clock.samples;
+  const State::Begun begun = state.begun.front();
+  state.begun.pop_front();
+  const bool newest = state.begun.empty();
+  compiled.has_frame = newest;
+  state.has_buffers = newest && compiled.plan.keeps_images();
 
-  Frame frame = state.output();
+  Frame frame = state.output(begun.jpeg_quality);
   if (state.parts.shader_reload) {
     draw_text(state.parts.shader_reload->error(), frame.rgba, frame.width, frame.height);
   }
-  frame.samples = state.clock.samples;
+  frame.samples = begun.samples;
   if (compiled.outputs.radiance_cache) {
     frame.radiance_cache = radiance_cache_use(compiled.plan, *compiled.outputs.radiance_cache);
   }
-  frame.converged = !needs_frame();
-  frame.new_buffers = state.begun.new_buffers;
-  state.list_passes(frame);
-  const auto elapsed = std::chrono::steady_clock::now() - state.begun.start;
+  frame.converged = newest && !needs_frame();
+  frame.new_buffers = begun.new_buffers;
+  state.list_passes(begun, frame);
+  const auto elapsed = std::chrono::steady_clock::now() - begun.start;
   frame.milliseconds = std::chrono::duration<float, std::milli>(elapsed).count();
   return frame;
 }

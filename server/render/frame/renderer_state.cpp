@@ -127,7 +127,8 @@ int Renderer::State::next_jpeg_quality() const {
   return encodes ? *requested_jpeg : 0;
 }
 
-Frame Renderer::State::output() {
+/// Of the frame that was finished last, which came as a JPEG of that quality; 0: as pixels.
+Frame Renderer::State::output(int encoded_quality) {
   if (!shows_output()) {
     const std::string& shown = settings.view.buffer;
     if (const auto values = read(shown)) return visualise(shown, *values);
@@ -135,8 +136,8 @@ Frame Renderer::State::output() {
   Frame frame;
   frame.width = extent.width;
   frame.height = extent.height;
-  if (jpeg_quality > 0) {
-    frame.jpeg = {jpeg_quality, read_jpeg(compiled->plan, *compiled->encoded, jpeg_quality)};
+  if (encoded_quality > 0) {
+    frame.jpeg = {encoded_quality, read_jpeg(compiled->plan, *compiled->encoded, encoded_quality)};
   }
   // A frame that is canceled, as on processors, leaves none to read later.
   if (frame.jpeg.bytes.empty() || parts.device.is_cpu()) frame.rgba = compiled->plan.read();
@@ -166,10 +167,26 @@ void Renderer::State::make_constants(const shared::FrameConstants& before) {
       count(scene_motion.light_changes(), motion_before.still_light_frames);
   has_previous = true;
   half_constants = at_half_size(constants);
-  constants_buffers.upload(constants, half_constants);
+  constants_buffers[compiled->plan.slot()].upload(constants, half_constants);
 }
 
-void Renderer::State::list_passes(Frame& frame) const {
+/// Of the frame that has begun last.
+void Renderer::State::count_sample() {
+  if (clock.samples == 0) clock.first_counts = !leaves_samples_out(compiled->inputs);
+  begun.back().samples = ++clock.samples;
+}
+
+/// Where no more than the camera differs, the next frame changes nothing that the device reads for
+/// the one that it works on. What is read after a frame but its output must be read before the
+/// next.
+bool Renderer::State::can_begin_another() const {
+  return compiled && !new_plan && !parts.device.is_cpu() && !parts.shader_reload &&
+         !moving->needs_advance() && has_previous && shows_output() && !keeps_buffers &&
+         settings.reference.use != protocol::ReferenceUse::always &&
+         compiled->plan.can_begin_another();
+}
+
+void Renderer::State::list_passes(const Begun& begun, Frame& frame) const {
   if (begun.posing) frame.passes.push_back({"pose", protocol::PassKind::host, *begun.posing});
   for (const auto& timing : compiled->plan.timings()) {
     if (timing.milliseconds < 0.0f) continue;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <deque>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -23,9 +24,21 @@ void choose_reference(protocol::Settings& settings);
 
 struct Renderer::State {
   State(Engine::Parts& engine, std::shared_ptr<const SceneResources> empty)
-      : parts(engine), nothing(std::move(empty)), constants_buffers(engine.device) {
+      : parts(engine),
+        nothing(std::move(empty)),
+        constants_buffers{FrameConstantsBuffers(engine.device),
+                          FrameConstantsBuffers(engine.device)} {
     choose_reference(settings);
   }
+
+  /// A frame that has begun.
+  struct Begun {
+    std::chrono::steady_clock::time_point start;
+    std::optional<float> posing;  // milliseconds; absent: nothing moved
+    bool new_buffers = false;
+    int jpeg_quality = 0;
+    std::uint32_t samples = 0;  // with it
+  };
 
   void discard_frame_plan();
   CompiledFrame& frame_plan();
@@ -34,7 +47,9 @@ struct Renderer::State {
   void change_settings(const protocol::Settings& changed);
   void explode(float amount);
   void use_newest_shaders();
-  Frame output();
+  bool can_begin_another() const;
+  void count_sample();
+  Frame output(int encoded_quality);
   int next_jpeg_quality() const;
   /// Whether all buffers of the next frame are kept: a view of one of them needs them, too.
   bool buffers_needed() const {
@@ -45,7 +60,7 @@ struct Renderer::State {
   std::optional<FloatImage> read(std::string_view name);
   bool pose();
   void make_constants(const shared::FrameConstants& before);
-  void list_passes(Frame& frame) const;
+  void list_passes(const Begun& begun, Frame& frame) const;
   std::uint32_t target_samples() const;
   bool reference_takes_over() const;
   void restart_accumulation() {
@@ -57,7 +72,7 @@ struct Renderer::State {
 
   Engine::Parts& parts;
   std::shared_ptr<const SceneResources> nothing;  // the empty scene
-  FrameConstantsBuffers constants_buffers;
+  FrameConstantsSlots constants_buffers;
   shared::FrameConstants constants{};
   shared::FrameConstants half_constants{};  // at_half_size()
   bool has_previous = false;
@@ -77,18 +92,13 @@ struct Renderer::State {
   VkExtent2D extent{640, 360};  // of the finished frame
   float draw_scale = 1.0f;
   std::optional<int> requested_jpeg;
-  int jpeg_quality = 0;  // of the frame that has begun; 0: its pixels come back
+  int jpeg_quality = 0;  // of the newest frame that has begun; 0: its pixels come back
 
   std::optional<SectionTracer> section_tracer;  // of a plan with section planes
   std::unique_ptr<CompiledFrame> compiled;      // absent until it is needed: see frame_plan()
   bool new_plan = false;                        // no frame has begun with it
 
-  /// Of the frame that has begun.
-  struct Begun {
-    std::chrono::steady_clock::time_point start;
-    std::optional<float> posing;  // milliseconds; absent: nothing moved
-    bool new_buffers = false;
-  } begun;
+  std::deque<Begun> begun;  // those that are not finished, the oldest first
 };
 
 }  // namespace heliograph::render

@@ -159,7 +159,7 @@ void RenderLoop::advance_or_wait() {
   if (loss_reported_.exchange(false) && device_ready_) on_device_lost("outside of rendering");
   const Views views = open_views();
   if (!device_ready_ && !recover_device(views)) return;
-  if (advance_next(views) || finish_frame() || !device_ready_) return;
+  if (advance_next(views) || finish_frame(true) || !device_ready_) return;
   auto due = next_due(views);
   if (held_back_until_) due = due ? std::min(*due, *held_back_until_) : *held_back_until_;
   occupied_ = std::ranges::any_of(views, [](const auto& view) { return view->plays(); });
@@ -229,7 +229,7 @@ bool RenderLoop::draw_in_turn(const std::shared_ptr<SessionView>& view) {
   if (view->next_frame_moves()) moved_at_ = start;
   const SessionView::Work work = advance(*view, true);
   // The device goes on with this frame while that of another view is shown.
-  finish_frame();
+  finish_frame(false);
   if (view->in_flight() && device_ready_) {
     in_flight_ = {view, start, contender.refines};
   } else if (work == SessionView::Work::drawing) {
@@ -238,13 +238,20 @@ bool RenderLoop::draw_in_turn(const std::shared_ptr<SessionView>& view) {
   return work != SessionView::Work::none;
 }
 
-/// Of the view that has one in flight; false: none has.
-bool RenderLoop::finish_frame() {
+/// Of the view that has one in flight; false: none has. `alone`: no other view has a frame to draw.
+bool RenderLoop::finish_frame(bool alone) {
   const auto finished = std::exchange(in_flight_, std::nullopt);
   if (!finished) return false;
   SessionView& view = *finished->view;
-  if (attempt(view, [&] { view.finish_frame(device_free_); })) {
+  Clock::time_point followed{};
+  const auto finish = [&] {
+    if (alone && view.can_begin_following()) view.begin_following_frame(device_free_);
+    followed = Clock::now();
+    view.finish_frame(device_free_);
+  };
+  if (attempt(view, finish)) {
     frame_finished(view, std::max(finished->begun, device_free_), finished->refines);
+    if (view.in_flight()) in_flight_ = {finished->view, followed, false};
   }
   return true;
 }

@@ -21,9 +21,26 @@ constexpr std::chrono::seconds sharing_window{1};
 /// Frames of static views trace every sample: about how much longer they take than moving ones.
 constexpr int refining_frame_factor = 2;
 constexpr std::chrono::milliseconds frame_time_for_depth{20};
+/// The device has the next frame before it is done with the one before, and that is drawn with
+/// input as new as can be.
+constexpr std::chrono::microseconds time_to_begin{800};
 
 std::uint32_t microseconds_of(Clock::duration duration) {
   return static_cast<std::uint32_t>(duration_cast<microseconds>(duration).count());
+}
+
+bool differs_by_camera_alone(const RenderState& before, const RenderState& after) {
+  return after.resources == before.resources && after.scene == before.scene &&
+         after.lights == before.lights && after.materials == before.materials &&
+         after.layers == before.layers && after.hidden == before.hidden &&
+         after.selected == before.selected && after.section == before.section &&
+         after.environment == before.environment &&
+         after.discontinuities == before.discontinuities &&
+         after.camera_follows == before.camera_follows && !before.animation.playing &&
+         after.animation == before.animation && after.settings == before.settings &&
+         after.width == before.width && after.height == before.height &&
+         after.reset_count == before.reset_count && !after.lockstep &&
+         after.reference_started == before.reference_started;
 }
 
 std::vector<protocol::BufferInfo> buffer_infos(const std::vector<render::BufferInfo>& buffers) {
@@ -96,7 +113,7 @@ void SessionView::release_renderer() {
   if (preparing_.valid()) preparing_.wait();
   preparing_ = {};
   if (!renderer_) return;
-  begun_.reset();
+  begun_.clear();
   renderer_.reset();
   newest_.reset();
   newest_stepped_ = false;
@@ -156,7 +173,7 @@ SessionView::Work SessionView::advance_step(bool may_draw) {
     adopt(step->state);
     set_draw_scale(1.0f);
     begin_frame(step->seconds);
-    if (begun_) finish_frame();
+    if (in_flight()) finish_frame();
     newest_stepped_ = true;
     broadcast_.pump();
     session_->timeline().end_step(*step, newest_->frame.samples);
@@ -323,7 +340,29 @@ void SessionView::begin_next_frame() {
   const std::chrono::duration<float> since = Clock::now() - frame_began_at_;
   newest_stepped_ = false;
   begin_frame(std::min(since.count(), max_frame_seconds));
-  if (begun_ && !renderer_->in_flight()) finish_frame();
+  if (in_flight() && !renderer_->in_flight()) finish_frame();
+}
+
+bool SessionView::can_begin_following() const {
+  return begun_.size() == 1 && begun_.front().view_state == ViewState::moving &&
+         renderer_->can_begin_another() && readers_.empty() &&
+         !session_->timeline().in_lockstep() && next_draw_scale() == draw_scale_ &&
+         session_->viewers().can_accept_two_frames(device_time_) &&
+         !(session_->viewers().wants_depth() && depth_pays());
+}
+
+void SessionView::begin_following_frame(Clock::time_point device_free) {
+  const Clock::time_point expected =
+      std::max(begun_.front().start, device_free) + device_time_ - time_to_begin;
+  renderer_->wait_for(expected - Clock::now());
+  readers_.collect();
+  if (!can_begin_following()) return;
+  RenderState next = session_->render_state();
+  if (!differs_by_camera_alone(state_, next)) return;
+  needed_at_ = Clock::now();
+  session_->viewers().announce_due_frames();
+  adopt(std::move(next));
+  if (renderer_->can_begin_another() && frame_due()) begin_next_frame();
 }
 
 /// `seconds`: that have passed since the last frame.
@@ -344,7 +383,13 @@ void SessionView::begin_frame(double seconds) {
            (by == Interruption::any_change || session_->camera().moves() != state_.camera_moves);
   });
   if (began) {
-    begun_ = {view_state, start};
+    begun_.push_back({.view_state = view_state,
+                      .start = start,
+                      .version = state_.version,
+                      .rev = state_.rev,
+                      .width = state_.width,
+                      .height = state_.height,
+                      .inputs = state_.inputs});
   } else {
     frame_began_at_ = before;
   }
@@ -357,23 +402,28 @@ std::optional<int> SessionView::wanted_jpeg(ViewState state) {
 }
 
 void SessionView::finish_frame(Clock::time_point device_free) {
-  const BegunFrame begun = *std::exchange(begun_, std::nullopt);
+  const BegunFrame begun = std::move(begun_.front());
+  begun_.pop_front();
   render::Frame frame = renderer_->finish();
   if (frame.new_buffers) publish_buffers();
   const Clock::time_point end = Clock::now();
   const Clock::duration taken = end - std::max(begun.start, device_free);
-  measure_frame(begun.state, taken);
+  measure_frame(begun.view_state, taken);
+  device_time_ = taken;
   services_.measurements.rendered(std::chrono::duration<double>(taken).count(), pass_timings(frame),
                                   frame.radiance_cache);
-  newest_ = describe(std::move(frame), begun.start, end);
+  newest_ = describe(std::move(frame), begun, end);
   first_frame_due_ = false;
-  newest_version_ = state_.version;
+  newest_version_ = begun.version;
   session_->reference().report_frame(newest_version_, newest_->frame.samples,
                                      newest_->frame.converged);
-  broadcast_.rendered(newest_, draw_policy(next_view_state(view_inputs())).purpose);
+  const bool moves_on = in_flight();
+  const ViewState shown_state = moves_on ? begun.view_state : next_view_state(view_inputs());
+  broadcast_.rendered(newest_, draw_policy(shown_state).purpose);
+  if (moves_on) broadcast_.pump();
 }
 
-std::shared_ptr<RenderedFrame> SessionView::describe(render::Frame frame, Clock::time_point start,
+std::shared_ptr<RenderedFrame> SessionView::describe(render::Frame frame, const BegunFrame& begun,
                                                      Clock::time_point end) {
   frame_times_.push_back(end);
   while (frame_times_.front() < end - std::chrono::seconds(1)) frame_times_.pop_front();
@@ -382,15 +432,15 @@ std::shared_ptr<RenderedFrame> SessionView::describe(render::Frame frame, Clock:
   protocol::FrameHeader& header = rendered->header;
   if (std::exchange(discontinuous_, false)) ++discontinuities_;
   header.render_id = ++render_count_;
-  header.state_rev = state_.rev;
-  header.full_width = static_cast<std::uint16_t>(state_.width);
-  header.full_height = static_cast<std::uint16_t>(state_.height);
-  header.render_start_us =
-      static_cast<std::uint64_t>(duration_cast<microseconds>(start.time_since_epoch()).count());
-  header.render_us = microseconds_of(end - start);
+  header.state_rev = begun.rev;
+  header.full_width = static_cast<std::uint16_t>(begun.width);
+  header.full_height = static_cast<std::uint16_t>(begun.height);
+  const auto start = begun.start.time_since_epoch();
+  header.render_start_us = static_cast<std::uint64_t>(duration_cast<microseconds>(start).count());
+  header.render_us = microseconds_of(end - begun.start);
   header.sample_count = frame.samples;
   rendered->frame = std::move(frame);
-  rendered->inputs = state_.inputs;
+  rendered->inputs = begun.inputs;
   rendered->discontinuities = discontinuities_;
   rendered->fps = static_cast<double>(frame_times_.size());
   rendered->depth_read = session_->viewers().wants_depth();

@@ -64,7 +64,12 @@ class SessionView {
   /// still work on that frame: then nothing but finish_frame() comes next.
   Work advance(bool may_draw);
   /// Whether the device still works on a frame.
-  bool in_flight() const { return begun_.has_value(); }
+  bool in_flight() const { return !begun_.empty(); }
+  /// Whether its next frame may begin before the device is done with the one that it works on.
+  bool can_begin_following() const;
+  /// Begins it shortly before that, where nothing but the camera has changed: the device goes on
+  /// while the earlier frame is read and sent.
+  void begin_following_frame(Clock::time_point device_free);
   /// Whether its next frame adds to a reference that was not asked for.
   bool refines_reference() const;
   /// Waits for it and shows it. `device_free`: when the device was done with the frame of another
@@ -107,9 +112,11 @@ class SessionView {
   bool begin_migration();
   bool prepare_beside(std::function<void()> task);
   void begin_next_frame();
+  float next_draw_scale() const;
   void begin_frame(double seconds);
   std::optional<int> wanted_jpeg(ViewState state);
-  std::shared_ptr<RenderedFrame> describe(render::Frame frame, Clock::time_point start,
+  struct BegunFrame;
+  std::shared_ptr<RenderedFrame> describe(render::Frame frame, const BegunFrame& begun,
                                           Clock::time_point end);
 
   render::Engine& engine_;
@@ -118,12 +125,17 @@ class SessionView {
   std::shared_ptr<Session> session_;
   Broadcast broadcast_;
   FrameReaders readers_;
-  /// A frame that the device works on.
+  /// A frame that the device works on, and what it shows.
   struct BegunFrame {
-    ViewState state;  // that it is drawn for
+    ViewState view_state;  // that it is drawn for
     Clock::time_point start;
+    std::uint64_t version = 0;  // of the session's state, like the next ones
+    std::uint32_t rev = 0;
+    std::uint32_t width = 0;
+    std::uint32_t height = 0;
+    std::vector<stream::InputEcho> inputs;
   };
-  std::optional<BegunFrame> begun_;
+  std::deque<BegunFrame> begun_;                // the older one first
   std::unique_ptr<render::Renderer> renderer_;  // null while no frames are needed
   std::future<void> preparing_;   // of the renderer or the scene, which are not touched meanwhile
   Clock::time_point needed_at_;   // last time that it was needed
@@ -135,6 +147,7 @@ class SessionView {
   Clock::time_point moving_frame_at_;  // the end of the newest moving frame
   std::size_t moving_sessions_ = 1;
   Clock::duration full_frame_time_{};  // that moving frames take at full size; zero: not known
+  Clock::duration device_time_{};      // that the newest took
   std::shared_ptr<const RenderedFrame> newest_;
   std::uint64_t newest_version_ = 0;     // of the state that it shows
   bool newest_stepped_ = false;          // it was rendered in lockstep

@@ -111,16 +111,20 @@ bool SessionView::plays() const {
 }
 
 void SessionView::adopt_draw_scale() {
-  set_draw_scale(draw_scale({.now = Clock::now(),
-                             .camera_moved_at = camera_moved_at_,
-                             .animation_playing = state_.animation.playing,
-                             .full = {state_.width, state_.height},
-                             .full_frame_time = full_frame_time_,
-                             .frame_time = milliseconds(state_.settings.motion.frame_time),
-                             .moving_sessions = moving_sessions_ + (moves() ? 0 : 1),
-                             .least_scale = state_.settings.motion.scale,
-                             .scale = draw_scale_,
-                             .capture_pending = readers_.has_captures()}));
+  set_draw_scale(next_draw_scale());
+}
+
+float SessionView::next_draw_scale() const {
+  return draw_scale({.now = Clock::now(),
+                     .camera_moved_at = camera_moved_at_,
+                     .animation_playing = state_.animation.playing,
+                     .full = {state_.width, state_.height},
+                     .full_frame_time = full_frame_time_,
+                     .frame_time = milliseconds(state_.settings.motion.frame_time),
+                     .moving_sessions = moving_sessions_ + (moves() ? 0 : 1),
+                     .least_scale = state_.settings.motion.scale,
+                     .scale = draw_scale_,
+                     .capture_pending = readers_.has_captures()});
 }
 
 /// What will be read after a step is not known before it.

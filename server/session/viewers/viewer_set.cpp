@@ -161,6 +161,14 @@ bool ViewerSet::can_accept_frame() const {
   });
 }
 
+bool ViewerSet::can_accept_two_frames(Clock::duration apart) const {
+  const std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  return std::ranges::any_of(viewers_, [&](const auto& entry) {
+    return entry.second.started && entry.second.pacer.has_room_for_two(now, apart);
+  });
+}
+
 bool ViewerSet::wants_depth() const {
   const std::lock_guard lock(mutex_);
   return std::any_of(viewers_.begin(), viewers_.end(), [](const auto& entry) {

@@ -104,6 +104,8 @@ class ViewerSet {
   bool has_other_participant(const std::string& viewer) const;
   /// Whether any viewer could be sent a frame that is rendered now.
   bool can_accept_frame() const;
+  /// Likewise that frame and one that is ready so long after it.
+  bool can_accept_two_frames(Clock::duration apart) const;
   /// Whether a viewer that is not paused asked for the depth of frames.
   bool wants_depth() const;
   /// Whether any viewer is started and not paused.

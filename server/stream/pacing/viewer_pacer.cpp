@@ -124,4 +124,8 @@ bool ViewerPacer::has_room(Clock::time_point now) const {
   return !paused_ && !pending_ && window_open() && now >= next_send_;
 }
 
+bool ViewerPacer::has_room_for_two(Clock::time_point now, Clock::duration apart) const {
+  return has_room(now) && in_flight_.size() + 1 < window_.size() && min_interval_ <= apart;
+}
+
 }  // namespace heliograph::stream

@@ -59,6 +59,8 @@ class ViewerPacer {
 
   /// Whether a new frame could be sent at once.
   bool has_room(Clock::time_point now) const;
+  /// Likewise of that frame and one more, so long behind it.
+  bool has_room_for_two(Clock::time_point now, Clock::duration apart) const;
   bool frame_pending() const { return pending_ != nullptr; }
   /// The last video frame offered to the viewer, if the video can continue from it.
   const std::optional<VideoPosition>& decoder() const { return decoder_; }

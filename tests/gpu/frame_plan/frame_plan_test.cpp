@@ -265,8 +265,50 @@ TEST_F(FramePlanTest, FramesBeginAndFinishInTurn) {
   plan_.compile();
   EXPECT_THROW(plan_.finish(), GpuError);
   plan_.begin();
+  if (!device_.is_cpu()) plan_.begin();
   EXPECT_THROW(plan_.begin(), GpuError);
   plan_.finish();
+}
+
+TEST_F(FramePlanTest, TheNextFrameBeginsWhileTheDeviceWorksOnOne) {
+  if (device_.is_cpu()) GTEST_SKIP() << "processors have finished a frame when it has begun";
+  const History history = plan_.history("count", format);
+  add("count", history.previous, history.current);
+  plan_.read_back(history.current);
+  plan_.compile();
+  plan_.execute();  // with timers
+  const auto count = [&] {
+    float value = 0.0f;
+    std::memcpy(&value, plan_.read().data(), sizeof value);
+    return value;
+  };
+  plan_.begin();
+  for (int frame = 2; frame <= 9; ++frame) {
+    ASSERT_TRUE(plan_.can_begin_another());
+    plan_.begin();
+    EXPECT_FALSE(plan_.can_begin_another()) << "two are enough";
+    plan_.finish();
+    EXPECT_EQ(count(), static_cast<float>(frame));
+  }
+  plan_.finish();
+  EXPECT_EQ(count(), 10.0f);
+}
+
+TEST_F(FramePlanTest, FramesWithTimersAreNotOverlapped) {
+  if (device_.is_cpu()) GTEST_SKIP() << "processors have finished a frame when it has begun";
+  const auto a = image("a"), b = image("b");
+  bool wanted = false;
+  add("maybe", a, b).when([&] { return wanted; });
+  add("always", a, image("c"));
+  plan_.compile();
+  plan_.execute();
+  plan_.begin();
+  EXPECT_TRUE(plan_.can_begin_another());
+  wanted = true;
+  EXPECT_FALSE(plan_.can_begin_another()) << "nothing is known of the time of that pass";
+  plan_.finish();
+  plan_.execute();
+  EXPECT_GT(plan_.timings()[0].milliseconds, 0.0f);
 }
 
 TEST_F(FramePlanTest, ReadsBackRequestedImageEveryFrame) {

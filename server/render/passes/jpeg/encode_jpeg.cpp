@@ -70,16 +70,19 @@ EncodedOutput encode_jpeg(gpu::FramePlan& plan, const Programs& programs, const 
       return programs.compute(shader, ~0u);
     };
   };
-  const auto words = [&plan](const char* name, std::uint64_t count, gpu::Memory memory) {
+  const auto words = [&plan](const char* name, std::uint64_t count) {
     return plan.buffer(name, count * sizeof(std::uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT,
-                       memory);
+                       gpu::Memory::device);
+  };
+  const auto returned_words = [&plan](const char* name, std::uint64_t count) {
+    return plan.returned(name, count * sizeof(std::uint32_t), VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
   };
   const std::uint32_t intervals = intervals_of(size);
-  const gpu::BufferRef slots = words("jpeg.slots", slot_words(intervals), gpu::Memory::device);
-  const gpu::BufferRef lengths = words("jpeg.lengths", intervals, gpu::Memory::device);
-  const gpu::BufferRef places = words("jpeg.places", intervals + 1, gpu::Memory::device);
-  const EncodedOutput encoded{size, words("jpeg.length", 1, gpu::Memory::readback),
-                              words("jpeg.joined", slot_words(intervals), gpu::Memory::readback)};
+  const gpu::BufferRef slots = words("jpeg.slots", slot_words(intervals));
+  const gpu::BufferRef lengths = words("jpeg.lengths", intervals);
+  const gpu::BufferRef places = words("jpeg.places", intervals + 1);
+  const EncodedOutput encoded{size, returned_words("jpeg.length", 1),
+                              returned_words("jpeg.joined", slot_words(intervals))};
   plan.only_when(
       [&quality] { return quality > 0; },
       [&] {
@@ -111,11 +114,11 @@ EncodedOutput encode_jpeg(gpu::FramePlan& plan, const Programs& programs, const 
 std::vector<std::uint8_t> read_jpeg(const gpu::FramePlan& plan, const EncodedOutput& encoded,
                                     int quality) {
   std::uint32_t length = 0;
-  std::memcpy(&length, plan.get(encoded.length).mapped(), sizeof length);
+  std::memcpy(&length, plan.latest(encoded.length).mapped(), sizeof length);
   if (length == 0) return {};
   std::vector<std::uint8_t> file = jpeg_header(encoded.size.width, encoded.size.height, quality);
   const auto* const coded =
-      reinterpret_cast<const std::uint8_t*>(plan.get(encoded.joined).mapped());
+      reinterpret_cast<const std::uint8_t*>(plan.latest(encoded.joined).mapped());
   file.insert(file.end(), coded, coded + length);
   return file;
 }

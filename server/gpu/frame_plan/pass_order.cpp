@@ -1,0 +1,90 @@
+#include "gpu/frame_plan/pass_order.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+#include <unordered_map>
+
+namespace heliograph::gpu {
+namespace {
+
+/// Groups of passes that follow each other by a barrier: a pass comes behind the last group that
+/// writes what it uses, or that uses what it writes.
+class Groups {
+ public:
+  std::uint32_t group_of(const PassUses& pass) {
+    if (pass.on_host) {
+      first_ = last_ + 2;
+      last_ = first_ - 1;
+      return last_;
+    }
+    std::uint32_t group = first_;
+    for (const Use& use : pass.uses) {
+      const Accessed& accessed = accessed_[use.resource];
+      group = std::max(group, accessed.written);
+      if (writes(use)) group = std::max(group, accessed.read);
+    }
+    for (const Use& use : pass.uses) {
+      Accessed& accessed = accessed_[use.resource];
+      if (reads(use)) accessed.read = std::max(accessed.read, group + 1);
+      if (writes(use)) accessed.written = std::max(accessed.written, group + 1);
+    }
+    last_ = std::max(last_, group);
+    return group;
+  }
+
+ private:
+  /// The first group behind the accesses so far.
+  struct Accessed {
+    std::uint32_t read = 0;
+    std::uint32_t written = 0;
+  };
+  std::unordered_map<std::uint32_t, Accessed> accessed_;
+  std::uint32_t first_ = 0;  // behind the last pass on the host
+  std::uint32_t last_ = 0;
+};
+
+}  // namespace
+
+PassOrder declared_order(std::span<const PassUses> passes) {
+  PassOrder order{std::vector<std::uint32_t>(passes.size()),
+                  std::vector<bool>(passes.size(), false)};
+  std::iota(order.passes.begin(), order.passes.end(), 0u);
+  std::set<std::uint32_t> read;
+  std::set<std::uint32_t> written;
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    const PassUses& pass = passes[i];
+    const bool hazard = std::ranges::any_of(pass.uses, [&](const Use& use) {
+      return written.contains(use.resource) || (writes(use) && read.contains(use.resource));
+    });
+    // A submit lies before and after a host pass, which orders everything.
+    if (hazard || pass.on_host) {
+      order.barrier_before[i] = !pass.on_host;
+      read.clear();
+      written.clear();
+    }
+    if (pass.on_host) continue;
+    for (const Use& use : pass.uses) {
+      if (reads(use)) read.insert(use.resource);
+      if (writes(use)) written.insert(use.resource);
+    }
+  }
+  return order;
+}
+
+PassOrder overlapping_order(std::span<const PassUses> passes) {
+  Groups groups;
+  std::vector<std::uint32_t> group(passes.size());
+  std::ranges::transform(passes, group.begin(),
+                         [&](const PassUses& pass) { return groups.group_of(pass); });
+  PassOrder order = declared_order(passes);
+  std::ranges::stable_sort(order.passes, {}, [&](std::uint32_t pass) { return group[pass]; });
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    const std::uint32_t pass = order.passes[i];
+    const bool on_host = passes[pass].on_host || (i > 0 && passes[order.passes[i - 1]].on_host);
+    order.barrier_before[pass] = i > 0 && !on_host && group[pass] != group[order.passes[i - 1]];
+  }
+  return order;
+}
+
+}  // namespace heliograph::gpu
