@@ -46,7 +46,7 @@ std::optional<Clock::time_point> FairShare::hold_back(Key key, Clock::time_point
 }
 
 void FairShare::stop_waiting(Account& account, Clock::time_point now) const {
-  account.next_start = std::max(account.next_start, virtual_now_) + (now - *account.awaited_since);
+  account.next_start = std::max(account.next_start, virtual_now_) + waited_for(account, now);
   account.awaited_since.reset();
   account.skipped = true;
   account.failed_waits = std::min(account.failed_waits + 1, max_doublings);
@@ -58,11 +58,12 @@ void FairShare::stop_waiting(Account& account, Clock::time_point now) const {
 void FairShare::charge(Key key, Clock::time_point begin, Clock::time_point end) {
   Account paid = account(key);
   virtual_now_ = std::max(virtual_now_, paid.next_start);
+  const Duration waited = waited_for(paid, begin);
   const Duration pause = begin - paid.ended;
   const bool undisturbed = paid.turn > 0 && paid.turn == turns_;
   if (undisturbed && pause <= max_wait) paid.pause += (pause - paid.pause) / 4;
   if (paid.awaited_since) {
-    paid.next_start += begin - *paid.awaited_since;
+    paid.next_start += waited;
     paid.failed_waits = 0;
     paid.awaited_since.reset();
   }
@@ -81,6 +82,14 @@ FairShare::Account FairShare::account(Key key) const {
   Account account = entry == accounts_.end() ? Account() : entry->second;
   account.next_start = std::max(account.next_start, virtual_now_);
   return account;
+}
+
+/// The view that was held back may have gone, and the device been idle or busy since then: no view
+/// was held back for longer than the timeout.
+FairShare::Duration FairShare::waited_for(const Account& account, Clock::time_point now) {
+  if (!account.awaited_since) return Duration::zero();
+  const Clock::time_point deadline = account.ended + wait_timeout(account);
+  return std::max(std::min(now, deadline) - *account.awaited_since, Duration::zero());
 }
 
 FairShare::Duration FairShare::wait_timeout(const Account& account) {

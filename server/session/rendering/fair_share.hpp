@@ -57,6 +57,7 @@ class FairShare {
 
   Account account(Key key) const;
   void stop_waiting(Account& account, Clock::time_point now) const;
+  static Duration waited_for(const Account& account, Clock::time_point now);
   static Duration wait_timeout(const Account& account);
 
   std::unordered_map<Key, Account> accounts_;

@@ -177,6 +177,19 @@ TEST_F(FairShareTest, NewViewsStartWithTheOthers) {
   EXPECT_NEAR(static_cast<double>((workers_["first"].worked - before).count()), 500.0, 20.0);
 }
 
+TEST_F(FairShareTest, AViewThatWasAwaitedWhenAllBecameIdlePaysForTheWaitOnly) {
+  Worker& heavy = workers_["heavy"] = {.cost = 100ms};
+  Worker& light = workers_["light"] = {.cost = 5ms, .pause = 3ms};
+  run_for(2s);
+  while (light.ready <= time_ || heavy.ready > time_ || choose()) run_for(1ms);
+  // Nothing is to be drawn any more while the device waits for one of them.
+  heavy.ready = light.ready = time_ + 10s;
+  run_for(11s);
+  const int before = light.pieces;
+  run_for(2s);
+  EXPECT_GE(light.pieces - before, 100) << "half of the time, one piece in 8 ms";
+}
+
 TEST_F(FairShareTest, ARemovedViewHasNoDebt) {
   const int key = 0;
   const int other = 0;
