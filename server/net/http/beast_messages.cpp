@@ -1,7 +1,10 @@
 #include "net/http/beast_messages.hpp"
 
 #include <algorithm>
+#include <boost/beast/http/error.hpp>
 #include <utility>
+
+#include "net/http/request_head.hpp"
 
 namespace heliograph::net {
 namespace {
@@ -31,6 +34,13 @@ void set_head(Message& message, ServerContext& context, const HttpResponse& answ
 }
 
 }  // namespace
+
+void ChunkExaminer::operator()(std::uint64_t, beast::string_view extension,
+                               boost::system::error_code& error) const {
+  if (!is_plain_chunk_extension({extension.data(), extension.size()})) {
+    error = http::error::bad_chunk_extension;
+  }
+}
 
 HttpRequest to_request(BeastRequest&& message, const ClientStream& stream) {
   HttpRequest request;

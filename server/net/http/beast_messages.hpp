@@ -2,6 +2,7 @@
 
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/string_body.hpp>
+#include <cstdint>
 
 #include "net/connection.hpp"
 #include "net/download/content_body.hpp"
@@ -17,6 +18,13 @@ using BeastResponse = beast::http::response<beast::http::string_body>;
 using BeastDownload = beast::http::response<ContentBody>;
 
 HttpRequest to_request(BeastRequest&& message, const ClientStream& stream);
+
+/// Refuses chunks whose line another program could end elsewhere. Beast's parser, which keeps a
+/// reference to this, lets line feeds pass in the quotes of an extension.
+struct ChunkExaminer {
+  void operator()(std::uint64_t size, beast::string_view extension,
+                  boost::system::error_code& error) const;
+};
 
 /// Properties of one response apart from its content.
 struct Framing {

@@ -156,7 +156,10 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     if (parser_->content_length().value_or(0) > largest) return received(http::error::body_limit);
     parser_->body_limit(largest);
     // The parser adds trailers to the headers; they are not for that, RFC 9110 section 6.5.1.
-    if (parser_->chunked()) headers_before_body_ = parser_->get().base();
+    if (parser_->chunked()) {
+      headers_before_body_ = parser_->get().base();
+      parser_->on_chunk_header(examine_chunk_);
+    }
     send_continue(parser_->get(), [self = shared_from_this()] {
       http::async_read(self->stream_, self->buffer_, *self->parser_,
                        IoHandler([self](error_code failed) { self->received(failed); }));
@@ -396,6 +399,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::string_body>> parser_;
   std::optional<BeastRequest::header_type> headers_before_body_;  // where trailers may follow
+  ChunkExaminer examine_chunk_;  // the parser keeps a reference to it
   std::shared_ptr<session::UploadStore::Incoming> upload_;
   std::optional<http::request_parser<http::file_body>> upload_parser_;
   std::chrono::steady_clock::time_point upload_deadline_;

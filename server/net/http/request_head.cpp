@@ -106,4 +106,10 @@ RequestHead examine_request_head(std::string_view received) {
   return head;
 }
 
+bool is_plain_chunk_extension(std::string_view extension) {
+  return std::none_of(extension.begin(), extension.end(), [](char c) {
+    return c != '\t' && std::iscntrl(static_cast<unsigned char>(c)) != 0;
+  });
+}
+
 }  // namespace heliograph::net

@@ -17,4 +17,8 @@ struct RequestHead {
 /// `received`: everything from the first byte of a request on.
 RequestHead examine_request_head(std::string_view received);
 
+/// Whether what follows the size of a chunk in its line means the same to every program. A control
+/// character, even in quotes, may end the line elsewhere (RFC 9112 section 7.1.1).
+bool is_plain_chunk_extension(std::string_view extension);
+
 }  // namespace heliograph::net

@@ -8,6 +8,8 @@
 namespace heliograph::net {
 namespace {
 
+using namespace std::string_view_literals;
+
 std::string get(const std::string& headers, const std::string& version = "1.1") {
   return "GET / HTTP/" + version + "\r\n" + headers + "\r\n";
 }
@@ -70,6 +72,15 @@ TEST(RequestHead, BareLineEndsAreFaultsBeforeTheHeadIsWhole) {
   EXPECT_NE(fault("GET / HTTP/1.1\r\nHost: a\rX: b"), "");
   EXPECT_NE(fault("GET / HTTP/1.1\r\nHost: a\r\r\n\r\n"), "");
   EXPECT_EQ(fault("GET / HTTP/1.1\r"), "") << "its line feed may follow";
+}
+
+TEST(RequestHead, ChunkExtensionsMayNotEndTheirLineElsewhere) {
+  for (const char* const plain : {"", ";a=b", ";a=\"b c\"", ";\ta"}) {
+    EXPECT_TRUE(is_plain_chunk_extension(plain)) << plain;
+  }
+  for (const std::string_view other : {";a=\nb"sv, ";a=\"\n\""sv, ";a=\rb"sv, ";\0"sv}) {
+    EXPECT_FALSE(is_plain_chunk_extension(other)) << other;
+  }
 }
 
 }  // namespace
