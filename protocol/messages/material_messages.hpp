@@ -15,7 +15,7 @@
 namespace heliograph::protocol {
 
 /// Members of extensions are absent where the material cannot have them: unlit ones have none, and
-/// only those whose file lets light through have the last four.
+/// only those whose file lets light through have transmission and all after it.
 struct MaterialInfo {
   std::string name;
   Vec3 base_color{};
@@ -33,10 +33,17 @@ struct MaterialInfo {
   std::optional<float> clearcoat_normal_scale;
   std::optional<Vec3> sheen_color;
   std::optional<float> sheen_roughness;
+  std::optional<float> iridescence;
+  std::optional<float> iridescence_ior;
+  std::optional<float> iridescence_thickness_minimum;
+  std::optional<float> iridescence_thickness_maximum;
+  std::optional<float> anisotropy;
+  std::optional<float> anisotropy_rotation;
   std::optional<float> transmission;
   std::optional<float> thickness;
   std::optional<float> attenuation_distance;
   std::optional<Vec3> attenuation_color;
+  std::optional<float> dispersion;
   std::vector<std::string> textures;
   std::vector<std::string> changed;
 
@@ -69,6 +76,21 @@ struct MaterialInfo {
               "Linear colour of the sheen, factor on the texture, if any; black: none."),
         field("sheen_roughness", &MaterialInfo::sheen_roughness,
               "Perceptual roughness of the sheen, factor on the texture, if any."),
+        field("iridescence", &MaterialInfo::iridescence,
+              "Fraction under a thin film, factor on the texture, if any."),
+        field("iridescence_ior", &MaterialInfo::iridescence_ior,
+              "Index of refraction of the film."),
+        field("iridescence_thickness_minimum", &MaterialInfo::iridescence_thickness_minimum,
+              "Thickness of the film where its texture is 0.")
+            .unit("nanometres"),
+        field("iridescence_thickness_maximum", &MaterialInfo::iridescence_thickness_maximum,
+              "Thickness of the film where its texture is 1, and without a texture.")
+            .unit("nanometres"),
+        field("anisotropy", &MaterialInfo::anisotropy,
+              "How much rougher the surface is in one direction, factor on the texture, if any."),
+        field("anisotropy_rotation", &MaterialInfo::anisotropy_rotation,
+              "Of that direction, from the tangent or the texture's direction to the bitangent.")
+            .unit("radians"),
         field("transmission", &MaterialInfo::transmission,
               "Fraction of light that passes, factor on the texture, if any."),
         field("thickness", &MaterialInfo::thickness,
@@ -79,6 +101,8 @@ struct MaterialInfo {
             .unit("metres"),
         field("attenuation_color", &MaterialInfo::attenuation_color,
               "Linear colour of white light after the attenuation distance."),
+        field("dispersion", &MaterialInfo::dispersion,
+              "How far the colours are bent apart: 20 / Abbe number."),
         field("textures", &MaterialInfo::textures, "Members that have a texture."),
         field("changed", &MaterialInfo::changed, "Members that differ from the scene file."),
     };
@@ -116,10 +140,17 @@ struct MaterialPatch {
   Change<float> clearcoat_normal_scale;
   Change<Vec3> sheen_color;
   Change<float> sheen_roughness;
+  Change<float> iridescence;
+  Change<float> iridescence_ior;
+  Change<float> iridescence_thickness_minimum;
+  Change<float> iridescence_thickness_maximum;
+  Change<float> anisotropy;
+  Change<float> anisotropy_rotation;
   Change<float> transmission;
   Change<float> thickness;
   Change<float> attenuation_distance;
   Change<Vec3> attenuation_color;
+  Change<float> dispersion;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -152,6 +183,26 @@ struct MaterialPatch {
         field("sheen_roughness", &MaterialPatch::sheen_roughness,
               "Perceptual roughness of the sheen.")
             .range(0, 1),
+        field("iridescence", &MaterialPatch::iridescence, "Fraction under a thin film.")
+            .range(0, 1),
+        field("iridescence_ior", &MaterialPatch::iridescence_ior,
+              "Index of refraction of the film.")
+            .range(1, 10),
+        field("iridescence_thickness_minimum", &MaterialPatch::iridescence_thickness_minimum,
+              "Thickness of the film where its texture is 0.")
+            .range(0, 1e5)
+            .unit("nanometres"),
+        field("iridescence_thickness_maximum", &MaterialPatch::iridescence_thickness_maximum,
+              "Thickness of the film where its texture is 1, and without a texture.")
+            .range(0, 1e5)
+            .unit("nanometres"),
+        field("anisotropy", &MaterialPatch::anisotropy,
+              "How much rougher the surface is in one direction.")
+            .range(0, 1),
+        field("anisotropy_rotation", &MaterialPatch::anisotropy_rotation,
+              "Of that direction, from the tangent or the texture's direction to the bitangent.")
+            .range(-6.5, 6.5)
+            .unit("radians"),
         field("transmission", &MaterialPatch::transmission,
               "Fraction of light that passes, of materials whose file lets light through.")
             .range(0, 1),
@@ -165,6 +216,9 @@ struct MaterialPatch {
         field("attenuation_color", &MaterialPatch::attenuation_color,
               "Linear colour of white light after the attenuation distance.")
             .range(0, 1),
+        field("dispersion", &MaterialPatch::dispersion,
+              "How far the colours are bent apart: 20 / Abbe number.")
+            .range(0, 20),
     };
   }
   bool operator==(const MaterialPatch&) const = default;

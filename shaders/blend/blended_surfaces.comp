@@ -6,6 +6,7 @@ layout(local_size_x = 64) in;
 // it, in proportion to the light it would send to the eye if nothing occluded it.
 #include "lib/scene/hit_material.glsl"
 #include "lib/lighting/lights.glsl"
+#include "lib/lighting/transmission.glsl"
 #include "lib/math/random.glsl"
 #include "lib/rays/ray_index.glsl"
 #include "lib/rays/ray_stream.glsl"
@@ -31,22 +32,23 @@ layout(push_constant) uniform Constants {
 
 const float least_seen = 1.0 / 512.0;  // of what is behind: less changes nothing
 
-/// As if nothing occluded it.
-vec3 open_light(HitSurface s, SurfaceMaterial m) {
+/// As if nothing occluded it. `bends`: what is behind it shows along a ray of its own.
+vec3 open_light(HitSurface s, SurfaceMaterial m, bool bends) {
   vec3 sum = vec3(0.0);
   for (uint i = 0u; enabled(frame_direct) && i < frame.light_count; ++i) {
     if (light_reaches(i, s.position)) sum += light_contribution(light_number(i), m, s.position);
   }
   if (enabled(frame_environment_diffuse)) sum += environment_diffuse(m);
   if (enabled(frame_environment_specular)) sum += environment_specular(m);
+  if (bends) sum += m.transmitted * environment_reflection(-m.eye, m.roughness);
   return sum;
 }
 
 /// `throughput` of the surface's light reaches the eye. The chosen hit carries it.
-void choose(ivec2 pixel, Hit hit, HitSurface s, SurfaceMaterial m, vec3 throughput,
+void choose(ivec2 pixel, Hit hit, HitSurface s, SurfaceMaterial m, bool bends, vec3 throughput,
             inout float total, inout float weight) {
   // Never 0: reflections may show what emits where the environment does not.
-  float own = luminance(throughput * open_light(s, m)) + 1e-3 * luminance(throughput);
+  float own = luminance(throughput * open_light(s, m, bends)) + 1e-3 * luminance(throughput);
   if (!(own > 0.0)) return;
   total += own;
   if (random_number(uvec2(pixel), frame.sample_index, 44u + round, frame.seed) * total >= own) return;
@@ -58,16 +60,16 @@ void choose(ivec2 pixel, Hit hit, HitSurface s, SurfaceMaterial m, vec3 throughp
 }
 
 /// Whether anything behind it still shows. `first`: whether it is the first of its pixel to be lit.
-bool lay_over(ivec2 pixel, Hit hit, HitSurface s, SurfaceMaterial m, out bool first) {
+bool lay_over(ivec2 pixel, Hit hit, HitSurface s, SurfaceMaterial m, bool bends, out bool first) {
   vec4 light = imageLoad(radiance, pixel);
   vec4 seen = imageLoad(behind, pixel);
   vec3 throughput = seen.rgb * s.alpha;
   light.rgb += throughput * own_light(s);
   first = light.a == 0.0;
-  if (!is_unlit(s)) choose(pixel, hit, s, m, throughput, light.a, seen.a);
+  if (!is_unlit(s)) choose(pixel, hit, s, m, bends, throughput, light.a, seen.a);
   first = first && light.a > 0.0;
   bool most_seen = luminance(seen.rgb) >= 0.5;
-  seen.rgb *= seen_behind(s, m);
+  seen.rgb *= bends ? vec3(1.0 - s.alpha) : seen_behind(s, m);
   if (most_seen && luminance(seen.rgb) < 0.5) {
     float view_z = -(frame.view * vec4(s.position, 1.0)).z;
     imageStore(front_motion, pixel, motion_of(hit, s, view_z));
@@ -88,7 +90,8 @@ void main() {
     HitSurface s = hit_surface(hit, ray.direction, cone_width(camera_cone(), hit.t));
     goes_on = is_open(s, ray.direction);
     if (!goes_on && is_blended(s)) {
-      goes_on = lay_over(pixel, hit, s, material_of(s, ray.direction), lit);
+      bool bends = bends_light(s, boundary_of(hit, s, ray.direction));
+      goes_on = lay_over(pixel, hit, s, material_of(s, ray.direction), bends, lit);
     }
     goes_on = goes_on && last_round == 0u;
     ray = beyond(ray, hit);

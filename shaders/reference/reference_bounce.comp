@@ -3,9 +3,12 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 // One vertex of a path of full global illumination: what arrives by itself; one light, one emissive
 // triangle and the environment in one direction as far as their shadow rays will find; and where
-// the path goes on.
+// the path goes on. Light that passes a surface is refracted: the rays to the environment and to
+// emissive triangles stop at every blended surface then, and paths find what is behind by chance.
+// Lights without a surface, which no path can meet, shine straight through.
 #include "lib/lighting/emissive_lights.glsl"
 #include "lib/lighting/environment_sampling.glsl"
+#include "lib/lighting/transmission.glsl"
 #include "lib/rays/reference_path.glsl"
 
 layout(set = 1, binding = 0, std430) buffer Rays { Ray rays[]; };
@@ -31,8 +34,18 @@ float mis_weight(float density, float other) {
   return other > 0.0 ? density / (density + other) : 1.0;
 }
 
+uint medium_of(ReferencePath path) { return path.flags >> path_medium_shift; }
+uint band_of(ReferencePath path) { return path.flags >> path_band_shift & path_bands; }
+
+void enter_medium(inout ReferencePath path, uint medium) {
+  path.flags = (path.flags & ((1u << path_medium_shift) - 1u)) | medium << path_medium_shift;
+}
+
+/// Whether the path is still the camera's ray, perhaps refracted.
+bool is_seen(ReferencePath path) { return (path.flags & path_turned) == 0u; }
+
 vec3 environment_at_miss(ReferencePath path, vec3 direction) {
-  if (path.bounces == 0u) return background(direction);
+  if (is_seen(path)) return background(direction);
   uint lobe = (path.flags & path_specular) != 0u ? frame_environment_specular
                                                  : frame_environment_diffuse;
   if (!enabled(lobe)) return vec3(0.0);
@@ -48,10 +61,22 @@ vec3 own_light_at_hit(ReferencePath path, HitSurface s, Hit hit, vec3 direction)
   return own_light(s) * mis_weight(path.density, emissive_density(hit, s, direction));
 }
 
-/// How likely scatter() takes the specular lobe.
-float specular_lobe_probability(SurfaceMaterial m) {
+/// How likely scatter() takes each lobe, and the way through the surface.
+struct LobeProbabilities {
+  float specular;
+  float through;
+  float wide;
+};
+
+LobeProbabilities lobe_probabilities(SurfaceMaterial m) {
   float specular = luminance(m.specular_albedo);
-  return specular / max(specular + luminance(wide_albedo(m)), 1e-6);
+  float through = scene_has(scene_transmits) ? luminance(m.transmitted) : 0.0;
+  float sum = max(specular + luminance(wide_albedo(m)) + through, 1e-6);
+  LobeProbabilities of;
+  of.specular = specular / sum;
+  of.through = through / sum;
+  of.wide = 1.0 - of.specular - of.through;
+  return of;
 }
 
 /// BRDF x cos of the lobes that scatter() draws by the cosine: diffuse, sheen.
@@ -74,39 +99,33 @@ struct SpecularValue {
 };
 
 SpecularValue specular_value(SurfaceMaterial m, vec3 l, bool of_coat) {
-  vec3 normal = reflecting_normal(m, of_coat ? m.coat_normal : m.normal);
-  vec3 tangent, bitangent;
-  orthonormal_basis(normal, tangent, bitangent);
-  float roughness = of_coat ? m.coat_roughness : m.roughness;
-  float alpha = roughness * roughness;
-  vec3 view = normalize(vec3(dot(m.eye, tangent), dot(m.eye, bitangent),
-                             max(dot(m.eye, normal), 1e-3)));
-  vec3 light = vec3(dot(l, tangent), dot(l, bitangent), dot(l, normal));
+  LobeFrame f = lobe_frame(m, of_coat);
+  vec3 light = vec3(dot(l, f.tangent), dot(l, f.bitangent), dot(l, f.normal));
   if (light.z <= 0.0) return SpecularValue(vec3(0.0), 0.0);
-  float density = visible_normal_pdf(view, light, alpha);
-  float v_dot_h = dot(view, normalize(view + light));
+  float density = visible_normal_pdf(f.view, light, f.alpha);
+  float v_dot_h = dot(f.view, normalize(f.view + light));
   vec3 reflectance = of_coat ? vec3(coat_reflectance(m, v_dot_h)) : microfacet_reflectance(m, v_dot_h);
   float drawn = has_coat(m) ? clamp(coat_share(m), 0.05, 0.95) : 0.0;
-  return SpecularValue(reflectance * (visible_normal_weight(view, light, alpha) * density),
+  return SpecularValue(reflectance * (visible_normal_weight(f.view, light, f.alpha) * density),
                        density * (of_coat ? drawn : 1.0 - drawn));
 }
 
 /// BRDF x cos over the density of `l`, which was drawn with `density` to sample a light, lobe by
 /// lobe: each with the weight that scatter() leaves to it.
 vec3 scattered_light(SurfaceMaterial m, vec3 l, float density, bool diffuse, bool specular) {
-  float specular_probability = specular_lobe_probability(m);
+  LobeProbabilities lobes = lobe_probabilities(m);
   vec3 sent = vec3(0.0);
   float cosine = dot(l, m.normal);
   if (cosine > 0.0 && diffuse) {
-    sent += wide_light(m, l) / (density + (1.0 - specular_probability) * cosine / pi);
+    sent += wide_light(m, l) / (density + lobes.wide * cosine / pi);
   }
   if (m.roughness >= least_roughness && specular) {
     SpecularValue value = specular_value(m, l, false);
-    sent += value.reflected / (density + specular_probability * value.density);
+    sent += value.reflected / (density + lobes.specular * value.density);
   }
   if (has_coat(m) && m.coat_roughness >= least_roughness && specular) {
     SpecularValue value = specular_value(m, l, true);
-    sent += value.reflected / (density + specular_probability * value.density);
+    sent += value.reflected / (density + lobes.specular * value.density);
   }
   return sent;
 }
@@ -162,31 +181,91 @@ Ray light_shadow_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pi
   return ray;
 }
 
-/// One of the two lobes, in proportion to what it gives back; false where the path ends.
-bool scatter(inout ReferencePath path, SurfaceMaterial m, RayCone cone, float t, ivec2 pixel,
-             out vec3 direction) {
-  direction = m.normal;
-  float specular_probability = specular_lobe_probability(m);
-  vec2 u = path_pair(pixel, constants.round, 4u);
-  RayCone next;
-  if (path_number(pixel, constants.round, 3u) < specular_probability) {
+/// Chooses the path's band of wavelengths where it first meets what bends them differently.
+void disperse(inout ReferencePath path, uint medium, ivec2 pixel) {
+  if (layers[medium].dispersion <= 0.0 || band_of(path) != 0u) return;
+  uint band = min(uint(path_number(pixel, constants.round, 10u) * 3.0), 2u);
+  vec3 chosen = vec3(0.0);
+  chosen[band] = 3.0;
+  path.throughput *= chosen;
+  path.flags |= (band + 1u) << path_band_shift;
+}
+
+/// Goes on behind the surface: straight or into a volume.
+vec3 pass_surface(inout ReferencePath path, SurfaceMaterial m, Boundary boundary, vec2 u,
+                  ivec2 pixel) {
+  float index = 0.0;
+  if (boundary.medium != 0u) {
+    disperse(path, boundary.medium, pixel);
+    index = refraction_index(boundary.medium, band_of(path));
+    enter_medium(path, boundary.medium);
+  }
+  path.flags |= path_specular;
+  path.density = 0.0;
+  return sample_transmitted(m, index, u);
+}
+
+/// Where a path from within a volume goes at its boundary.
+vec3 depart(inout ReferencePath path, HitSurface s, SurfaceMaterial m, uint medium, vec2 u,
+            ivec2 pixel) {
+  disperse(path, medium, pixel);
+  Departure d = sample_departure(s, m, refraction_index(medium, band_of(path)),
+                                 path_number(pixel, constants.round, 3u), u);
+  path.throughput *= d.weight;
+  path.density = 0.0;
+  path.flags = (path.flags & ~path_specular) | (d.diffuse ? 0u : path_specular);
+  if (!d.outside) {
+    path.flags |= path_turned;
+    path.bounces += 1u;
+  }
+  enter_medium(path, d.outside ? 0u : medium);
+  return d.direction;
+}
+
+/// Reflected by one of the two lobes.
+vec3 reflect_path(inout ReferencePath path, SurfaceMaterial m, LobeProbabilities lobes,
+                  bool specular, vec2 u, out float roughness) {
+  vec3 direction;
+  if (specular) {
     SpecularSample drawn = sample_specular(m, u);
     direction = drawn.direction;
-    path.throughput *= drawn.weight / specular_probability;
-    path.flags = path_specular;
-    path.density = drawn.roughness >= least_roughness ? specular_probability * drawn.density : 0.0;
-    next = reflected_cone(cone, t, drawn.roughness);
+    path.throughput *= drawn.weight / lobes.specular;
+    path.flags = (path.flags & path_kept) | path_turned | path_specular;
+    path.density = drawn.roughness >= least_roughness ? lobes.specular * drawn.density : 0.0;
+    roughness = drawn.roughness;
   } else {
     direction = sample_cosine(m.normal, u);
     bool open = dot(direction, m.geometric) > 0.0;
-    path.throughput *= open ? wide_weight(m, direction) / (1.0 - specular_probability) : vec3(0.0);
-    path.flags = 0u;
-    path.density = (1.0 - specular_probability) * max(dot(direction, m.normal), 0.0) / pi;
-    next = reflected_cone(cone, t, 1.0);
+    path.throughput *= open ? wide_weight(m, direction) / max(lobes.wide, 1e-6) : vec3(0.0);
+    path.flags = (path.flags & path_kept) | path_turned;
+    path.density = lobes.wide * max(dot(direction, m.normal), 0.0) / pi;
+    roughness = 1.0;
   }
+  path.bounces += 1u;
+  return direction;
+}
+
+/// One of the lobes or the way through, in proportion to what it gives; false where the path ends.
+bool scatter(inout ReferencePath path, HitSurface s, SurfaceMaterial m, Boundary boundary,
+             RayCone cone, float t, ivec2 pixel, out vec3 direction) {
+  vec2 u = path_pair(pixel, constants.round, 4u);
+  float roughness = m.roughness;
+  if (boundary.leaving) {
+    direction = depart(path, s, m, boundary.medium, u, pixel);
+  } else {
+    LobeProbabilities lobes = lobe_probabilities(m);
+    float pick = path_number(pixel, constants.round, 3u);
+    bool specular = pick < lobes.specular;
+    if (!specular && pick < lobes.specular + lobes.through) {
+      path.throughput *= m.transmitted / lobes.through;
+      direction = pass_surface(path, m, boundary, u, pixel);
+    } else {
+      direction = reflect_path(path, m, lobes, specular, u, roughness);
+    }
+  }
+  RayCone next = reflected_cone(cone, t, roughness);
   path.cone_width = next.width;
   path.cone_spread = next.spread;
-  path.bounces += 1u;
   float largest = max(path.throughput.r, max(path.throughput.g, path.throughput.b));
   if (path.bounces >= first_roulette) {
     float survival = min(largest, 0.95);
@@ -196,55 +275,111 @@ bool scatter(inout ReferencePath path, SurfaceMaterial m, RayCone cone, float t,
   return largest > 0.0;
 }
 
+/// What lights from outside do at a boundary that they reach through the volume: nothing but its
+/// diffuse lobe.
+void keep_diffuse(inout SurfaceMaterial m) {
+  m.f0 = m.f90_minus_f0 = m.specular_albedo = m.sheen = m.sheen_albedo = vec3(0.0);
+  m.coat_albedo = 0.0;
+}
+
+/// The surface at `hit` as paths see it. What a volume lets in is attenuated along the way through
+/// it, not at its surface.
+SurfaceMaterial path_material(inout HitSurface s, vec3 direction) {
+  if (scene_has(scene_transmits)) s.layer.transmitted = vec3(s.layer.transmission);
+  return material_of(s, direction);
+}
+
+/// Whether the ray goes straight on behind the surface that it has met.
+bool goes_straight_on(inout ReferencePath path, HitSurface s, Boundary boundary, vec3 direction,
+                      ivec2 pixel) {
+  // Volumes keep no light of paths that end.
+  if (boundary.leaving && path.bounces >= constants.limit) {
+    enter_medium(path, 0u);
+    return true;
+  }
+  bool open = is_seen(path) && medium_of(path) == 0u && is_open(s, direction);
+  if (open) return true;
+  vec3 behind = vec3(1.0 - s.alpha);
+  if (!passes_through(s, behind, pixel, constants.round, path.throughput)) return false;
+  if (scene_has(scene_transmits)) path.density = 0.0;
+  return true;
+}
+
+/// The rays that leave a lit surface of a path.
+struct LeavingRays {
+  Ray shadow;
+  Ray sky;
+  Ray emissive;
+  Ray next;
+};
+
+LeavingRays leave_surface(inout ReferencePath path, HitSurface s, SurfaceMaterial m,
+                          Boundary boundary, float t, ivec2 pixel) {
+  LeavingRays to = LeavingRays(no_ray(), no_ray(), no_ray(), no_ray());
+  RayCone cone = RayCone(path.cone_width, path.cone_spread);
+  vec3 arrived = path.throughput;
+  SurfaceMaterial lit = m;
+  if (boundary.leaving) keep_diffuse(lit);
+  to.shadow = light_shadow_ray(lit, s.position, arrived, pixel);
+  if (path.bounces >= constants.limit) return to;
+  if (!boundary.leaving) {
+    to.sky = sky_ray(m, s.position, arrived, pixel);
+    if (scene_has(scene_emissive)) {
+      to.emissive = emissive_ray(m, s.position, reflected_cone(cone, t, 1.0), arrived, pixel);
+    }
+  }
+  vec3 direction;
+  if (scatter(path, s, m, boundary, cone, t, pixel, direction)) {
+    vec3 side = dot(direction, s.geometric) < 0.0 ? -s.geometric : s.geometric;
+    to.next = ray_from(s.position, side, direction, 1e30);
+  }
+  return to;
+}
+
+/// Blended surfaces stop rays that could meet what they look for on a refracted way, too.
+uint chance_blending() { return scene_has(scene_transmits) ? 0u : frame_blending(); }
+
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel)) return;
   uint index = pixel_index(pixel);
   if (index == 0u) shadow_count = dense_stream(frame_blending());
   Ray ray = rays[index];
-  if (index == 0u) sky_count = dense_stream(frame_blending());
-  if (scene_has(scene_emissive) && index == 0u) emissive_count = dense_stream(frame_blending());
-  Ray shadow = no_ray(), sky = no_ray(), emissive = no_ray();
+  if (index == 0u) sky_count = dense_stream(chance_blending());
+  if (scene_has(scene_emissive) && index == 0u) emissive_count = dense_stream(chance_blending());
+  LeavingRays to = LeavingRays(no_ray(), no_ray(), no_ray(), no_ray());
   if (is_wanted(ray)) {
     Hit hit = hits[index];
     ReferencePath path = paths[index];
     vec3 arrived = path.throughput;
     vec3 radiance = vec3(0.0);
-    rays[index] = no_ray();
     if (hit.instance == hit_none) {
       radiance = environment_at_miss(path, ray.direction);
-      if (path.bounces == 0u) radiance *= ground_factor(ray.origin, ray.direction);
+      if (is_seen(path)) radiance *= ground_factor(ray.origin, ray.direction);
     } else {
       RayCone cone = RayCone(path.cone_width, path.cone_spread);
       HitSurface s = hit_surface(hit, ray.direction, cone_width(cone, hit.t));
-      SurfaceMaterial m = material_of(s, ray.direction);
-      bool open = path.bounces == 0u && is_open(s, ray.direction);
-      if (open || passes_through(s, m, pixel, constants.round, path.throughput)) {
-        rays[index] = beyond(ray, hit);
+      SurfaceMaterial m = path_material(s, ray.direction);
+      if (medium_of(path) != 0u) {
+        path.throughput *= left_by_volume(medium_of(path), hit.t - ray.t_min);
+      }
+      Boundary boundary = boundary_of(hit, s, ray.direction);
+      // The camera is in no volume: whichever side it sees, it sees from outside.
+      boundary.leaving = boundary.leaving && (path.flags & ~path_kept) != 0u;
+      if (goes_straight_on(path, s, boundary, ray.direction, pixel)) {
+        to.next = beyond(ray, hit);
       } else {
         arrived = path.throughput;
         radiance = own_light_at_hit(path, s, hit, ray.direction);
-        if (!is_unlit(s)) {
-          shadow = light_shadow_ray(m, s.position, arrived, pixel);
-          if (path.bounces < constants.limit) {
-            sky = sky_ray(m, s.position, arrived, pixel);
-            if (scene_has(scene_emissive)) {
-              RayCone wide = reflected_cone(cone, hit.t, 1.0);
-              emissive = emissive_ray(m, s.position, wide, arrived, pixel);
-            }
-            vec3 direction;
-            if (scatter(path, m, cone, hit.t, pixel, direction)) {
-              rays[index] = ray_from(s.position, s.geometric, direction, 1e30);
-            }
-          }
-        }
+        if (!is_unlit(s)) to = leave_surface(path, s, m, boundary, hit.t, pixel);
       }
       paths[index] = path;
     }
+    rays[index] = to.next;
     vec3 sum = imageLoad(reference, pixel).rgb + arrived * radiance;
     imageStore(reference, pixel, vec4(sum, 1.0));
   }
-  shadow_rays[index] = shadow;
-  sky_rays[index] = sky;
-  if (scene_has(scene_emissive)) emissive_rays[index] = emissive;
+  shadow_rays[index] = to.shadow;
+  sky_rays[index] = to.sky;
+  if (scene_has(scene_emissive)) emissive_rays[index] = to.emissive;
 }

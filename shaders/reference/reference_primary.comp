@@ -69,7 +69,7 @@ void main() {
     SurfaceMaterial m = material_of(s, ray.direction);
     if (constants.round + 1u < constants.limit &&
         (is_open(s, ray.direction) ||
-         passes_through(s, m, pixel, constants.round, path.throughput))) {
+         passes_through(s, seen_behind(s, m), pixel, constants.round, path.throughput))) {
       rays[index] = beyond(ray, hit);
       paths[index] = path;
       return;

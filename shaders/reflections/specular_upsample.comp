@@ -33,12 +33,8 @@ const float distance_falloff = 0.25;
 float lobe_ratio(SurfaceMaterial m, vec4 direction) {
   if (has_coat(m) || m.roughness < smooth_roughness) return 1.0;
   vec3 l = direction.xyz;
-  float n_dot_l = dot(m.normal, l);
-  if (n_dot_l <= 0.0) return 0.0;
-  float alpha = m.roughness * m.roughness;
-  float n_dot_h = clamp(dot(m.normal, normalize(m.eye + l)), 0.0, 1.0);
-  float lobe = ggx_distribution(n_dot_h, alpha) * smith_visibility(n_dot_l, m.n_dot_v, alpha);
-  return min(lobe * n_dot_l / max(direction.w, 1e-6), 16.0);
+  if (dot(m.normal, l) <= 0.0) return 0.0;
+  return min(base_lobe(m, l) / max(direction.w, 1e-6), 16.0);
 }
 
 /// How far the pixel that a cell traced for is of the same surface, 0..1.
@@ -74,7 +70,7 @@ vec4 gathered(SurfaceMaterial m, ivec2 pixel, float view_z) {
   }
   // No neighbour is similar to this pixel: the prefiltered environment is used.
   if (total < 1e-4) {
-    vec3 reflected = reflect(-m.eye, m.normal);
+    vec3 reflected = reflect(-m.eye, reflection_normal(m));
     vec3 light = enabled(frame_environment_specular)
                      ? environment_reflection(reflected, specular_roughness(m)) : vec3(0.0);
     return vec4(light, 1e4);

@@ -14,7 +14,8 @@ SHARED_CONSTANT uint frame_emissive = 32u;
 SHARED_CONSTANT uint frame_environment_visible = 64u;
 SHARED_CONSTANT uint frame_orthographic = 128u;
 SHARED_CONSTANT uint frame_indirect = 256u;  // indirect diffuse light in place of ambient occlusion
-SHARED_CONSTANT uint frame_light_grid = 512u;  // lights by shaders/shared/light_grid.h
+SHARED_CONSTANT uint frame_light_grid = 512u;   // lights by shaders/shared/light_grid.h
+SHARED_CONSTANT uint frame_refraction = 1024u;  // rays through blended surfaces
 
 // Whether surfaces in view trace ambient occlusion. Blended ones do so beside indirect light, too.
 SHARED_FUNCTION bool traces_ambient(uint flags) {

@@ -50,7 +50,17 @@ struct MaterialLayer {
   float coat;        // fraction of the surface that lies under a clear coat
   float coat_roughness;
   float coat_normal_scale;
-  TextureSlot specular_texture;        // a
+  float iridescence;     // fraction of the surface that lies under a thin film
+  float film_ior;        // its index of refraction
+  float film_least;      // its thickness where the texture is 0, nanometres
+  float film_thickness;  // and where it is 1
+  float anisotropy;      // strength
+  float grain_x;         // direction in which the surface is rougher, in its tangent plane
+  float grain_y;
+  float dispersion;              // 20 / Abbe number
+  vec3 attenuation;              // of light within the volume: exponents, per metre
+  float refraction;              // index of refraction of the volume; 0: the surface is a thin wall
+  TextureSlot specular_texture;  // a
   TextureSlot specular_color_texture;  // rgb
   TextureSlot coat_texture;            // r
   TextureSlot coat_roughness_texture;  // g
@@ -59,8 +69,11 @@ struct MaterialLayer {
   TextureSlot sheen_roughness_texture;  // a
   TextureSlot transmission_texture;     // r
   TextureSlot thickness_texture;        // g
+  TextureSlot iridescence_texture;      // r
+  TextureSlot film_texture;             // g: the film's thickness
+  TextureSlot anisotropy_texture;       // rg: direction, b: strength
 };
-SHARED_CONSTANT uint layer_textures = 9u;
+SHARED_CONSTANT uint layer_textures = 12u;
 
 // glTF 2.0 metallic-roughness material; factors are linear.
 struct Material {
@@ -132,6 +145,7 @@ SHARED_CONSTANT uint scene_blends = 8u;       // has surfaces of partial coverag
 SHARED_CONSTANT uint scene_layers = 16u;      // has materials with layers other than the first
 SHARED_CONSTANT uint scene_emissive = 32u;    // has emissive triangles
 SHARED_CONSTANT uint scene_light_grid = 64u;  // has so many punctual lights (light_grid.h)
+SHARED_CONSTANT uint scene_transmits = 128u;  // has surfaces that light passes
 
 SHARED_CONSTANT uint light_directional = 0u;
 SHARED_CONSTANT uint light_point = 1u;

@@ -3,10 +3,10 @@
 #include "tests/shader/harness.glsl"
 #include "lib/math/sampling.glsl"
 
-// a: view, alpha; b: two random numbers, or the direction of light.
+// a: view, alpha; b: two random numbers, or the direction of light; alpha along y, 0: the same.
 ShaderOutput evaluate(uint which, ShaderInput given) {
   vec3 view = given.a.xyz;
-  float alpha = given.a.w;
+  vec2 alpha = vec2(given.a.w, given.b.w == 0.0 ? given.a.w : given.b.w);
   if (which == 0u) {
     vec3 normal = sample_visible_normal(view, alpha, given.b.xy);
     vec3 light = reflect(-view, normal);

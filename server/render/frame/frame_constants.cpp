@@ -23,6 +23,7 @@ std::uint32_t flags(const protocol::Settings& settings, const scene::Camera& cam
          bit(settings.lighting.environment_specular, shared::frame_environment_specular) |
          bit(settings.lighting.emissive, shared::frame_emissive) |
          bit(settings.lighting.light_grid, shared::frame_light_grid) |
+         bit(settings.transmission.refraction, shared::frame_refraction) |
          bit(settings.environment.visible, shared::frame_environment_visible) |
          bit(camera.orthographic_height > 0.0f, shared::frame_orthographic);
 }

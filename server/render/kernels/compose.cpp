@@ -10,6 +10,7 @@
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/simd/environment.hpp"
 #include "render/kernels/simd/light_grid.hpp"
+#include "render/kernels/simd/material/packed_layer.hpp"
 #include "render/kernels/simd/random.hpp"
 #include "render/kernels/simd/view.hpp"
 
@@ -136,7 +137,7 @@ class Composition {
     const Triple<V> geometric = octahedral_decode(encoded.z, encoded.w);
     if constexpr (layered) {
       V roughness;
-      const SurfaceLayer<V> layer = unpack_layer(d_, load(job_.layers, x, y), roughness);
+      const SurfaceLayer<V> layer = unpack_layer(d_, load(job_.layers, x, y), normal, roughness);
       return make_material(d_, base_color, packed.y, roughness, normal, geometric, view.to_eye(x),
                            tables_, layer);
     } else {

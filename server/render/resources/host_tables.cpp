@@ -11,7 +11,7 @@ namespace heliograph::render::kernels {
 namespace {
 
 static_assert(sizeof(Slot) == 16 * 4 && sizeof(Material) == (16 + 5 * 16) * 4 &&
-              sizeof(Layer) == (20 + 9 * 16) * 4);
+              sizeof(Layer) == (32 + 12 * 16) * 4);
 
 bool same_texels(const shared::TextureSlot& a, const shared::TextureSlot& b) {
   return a.texture == b.texture && a.uv_set == b.uv_set &&
@@ -108,6 +108,16 @@ Layer make_layer(const shared::MaterialLayer& from, const SlotMaker& slots) {
   to.coat = from.coat;
   to.coat_roughness = from.coat_roughness;
   to.coat_normal_scale = from.coat_normal_scale;
+  to.iridescence = from.iridescence;
+  to.film_ior = from.film_ior;
+  to.film_least = from.film_least;
+  to.film_thickness = from.film_thickness;
+  to.anisotropy = from.anisotropy;
+  to.grain_x = from.grain_x;
+  to.grain_y = from.grain_y;
+  to.dispersion = from.dispersion;
+  to.attenuation = from.attenuation;
+  to.refraction = from.refraction;
   to.coat_slot = slots.make(from.coat_texture, to.uses);
   to.coat_roughness_slot = slots.make(from.coat_roughness_texture, to.uses);
   to.coat_normal_slot = slots.make(from.coat_normal_texture, to.uses);
@@ -117,9 +127,13 @@ Layer make_layer(const shared::MaterialLayer& from, const SlotMaker& slots) {
   to.sheen_roughness_slot = slots.make(from.sheen_roughness_texture, to.uses);
   to.transmission_slot = slots.make(from.transmission_texture, to.uses);
   to.thickness_slot = slots.make(from.thickness_texture, to.uses);
+  to.iridescence_slot = slots.make(from.iridescence_texture, to.uses);
+  to.film_slot = slots.make(from.film_texture, to.uses);
+  to.anisotropy_slot = slots.make(from.anisotropy_texture, to.uses);
   share_place(to.coat_slot, {&to.coat_roughness_slot, &to.coat_normal_slot, &to.specular_slot,
                              &to.specular_color_slot, &to.sheen_color_slot,
-                             &to.sheen_roughness_slot, &to.transmission_slot, &to.thickness_slot});
+                             &to.sheen_roughness_slot, &to.transmission_slot, &to.thickness_slot,
+                             &to.iridescence_slot, &to.film_slot, &to.anisotropy_slot});
   return to;
 }
 

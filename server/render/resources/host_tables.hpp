@@ -77,6 +77,16 @@ struct Layer {
   float coat;
   float coat_roughness;
   float coat_normal_scale;
+  float iridescence;
+  float film_ior;
+  float film_least;
+  float film_thickness;
+  float anisotropy;
+  float grain_x;
+  float grain_y;
+  float dispersion;
+  glm::vec3 attenuation;
+  float refraction;
   std::uint32_t uses;  // uses_*
   std::array<std::uint32_t, 3> padding;
   Slot coat_slot;  // whose place the others may share
@@ -88,6 +98,9 @@ struct Layer {
   Slot sheen_roughness_slot;
   Slot transmission_slot;
   Slot thickness_slot;
+  Slot iridescence_slot;
+  Slot film_slot;
+  Slot anisotropy_slot;
 };
 
 /// What surfaces are made of.

@@ -55,14 +55,15 @@ vec3 environment_irradiance(vec3 world) {
 SurfaceMaterial surface_material(vec3 base_color, float metallic, float roughness, vec3 normal,
                                  vec3 geometric, vec3 eye, SurfaceLayer layer) {
   float n_dot_v = material_n_dot_v(normal, eye);
-  vec2 split = textureLod(split_sum_table, vec2(n_dot_v, roughness), 0.0).rg;
+  vec2 at = vec2(n_dot_v, round_roughness(roughness, layer.anisotropy));
+  vec2 split = textureLod(split_sum_table, at, 0.0).rg;
   SurfaceMaterial m =
       make_material(base_color, metallic, roughness, normal, geometric, eye, split, layer);
   if (scene_has(scene_layers) && layer.sheen != vec3(0.0)) {
     add_sheen(m, layer, textureLod(sheen_table, vec2(n_dot_v, layer.sheen_roughness), 0.0).r);
   }
   if (scene_has(scene_layers) && layer.coat > 0.0) {
-    vec2 at = vec2(material_n_dot_v(layer.coat_normal, eye), layer.coat_roughness);
+    at = vec2(material_n_dot_v(layer.coat_normal, eye), layer.coat_roughness);
     add_coat(m, layer, textureLod(split_sum_table, at, 0.0).rg);
   }
   return m;
@@ -75,7 +76,7 @@ vec3 environment_diffuse(SurfaceMaterial m) {
 
 /// The environment's specular light by the split sum (Karis 2013), without occlusion.
 vec3 environment_specular(SurfaceMaterial m) {
-  vec3 reflected = reflect(-m.eye, m.normal);
+  vec3 reflected = reflect(-m.eye, reflection_normal(m));
   vec3 light = under_coat_albedo(m) * environment_reflection(reflected, m.roughness);
   if (has_coat(m)) {
     light += m.coat_albedo *

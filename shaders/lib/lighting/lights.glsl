@@ -136,6 +136,11 @@ LightSample sample_light(Light light, vec3 position, vec2 u) {
 vec3 light_contribution(Light light, SurfaceMaterial m, vec3 position) {
   if (has_area(light)) {
     vec2 fractions = area_light_shares(light, m.normal, m.eye, m.n_dot_v, m.roughness, position);
+    if (has_grain(m)) {
+      vec3 bent = reflection_normal(m);
+      fractions.y = area_light_shares(light, bent, m.eye, material_n_dot_v(bent, m.eye),
+                                      m.roughness, position).y;
+    }
     vec3 energy = wide_albedo(m) * fractions.x + under_coat_albedo(m) * fractions.y;
     if (has_coat(m)) {
       energy += m.coat_albedo * area_light_shares(light, m.coat_normal, m.eye, m.coat_n_dot_v,

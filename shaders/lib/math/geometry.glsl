@@ -3,13 +3,23 @@
 
 const float pi = 3.14159265358979;
 
-/// Two unit vectors that complete `n` to a right-handed frame (Duff et al. 2017).
-void orthonormal_basis(vec3 n, out vec3 tangent, out vec3 bitangent) {
-  float s = n.z >= 0.0 ? 1.0 : -1.0;
+/// Two unit vectors that complete `n` to a right-handed frame (Duff et al. 2017), which turns with
+/// `n` steadily but near z = -s.
+void signed_basis(vec3 n, float s, out vec3 tangent, out vec3 bitangent) {
   float a = -1.0 / (s + n.z);
   float b = n.x * n.y * a;
   tangent = vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x);
   bitangent = vec3(b, s + n.y * n.y * a, -n.y);
+}
+
+void orthonormal_basis(vec3 n, out vec3 tangent, out vec3 bitangent) {
+  signed_basis(n, n.z >= 0.0 ? 1.0 : -1.0, tangent, bitangent);
+}
+
+/// The same for directions that are stored: with a normal that differs by rounding they must come
+/// back. So it turns at once where hardly any normal is, and not where those of all walls are.
+void storage_basis(vec3 n, out vec3 tangent, out vec3 bitangent) {
+  signed_basis(n, n.z >= -0.999 ? 1.0 : -1.0, tangent, bitangent);
 }
 
 /// The same, but so that normals which follow the same axis most have much the same frame.

@@ -1,12 +1,12 @@
 // Drawing directions from the specular lobe. `view` and `light` are in the frame of the shading
-// normal, which is +z; alpha = roughness^2.
+// normal, which is +z; alpha = roughness^2, along x and along y.
 #ifndef HELIOGRAPH_SAMPLING_GLSL
 #define HELIOGRAPH_SAMPLING_GLSL
 #include "lib/lighting/brdf.glsl"
 
 /// A microfacet normal as seen from `view` (z > 0), drawn from a cap of the sphere (Dupuy and
 /// Benyoub 2023). alpha = 0 gives exactly +z.
-vec3 sample_visible_normal(vec3 view, float alpha, vec2 u) {
+vec3 sample_visible_normal(vec3 view, vec2 alpha, vec2 u) {
   vec3 stretched = normalize(vec3(alpha * view.xy, view.z));
   float angle = 2.0 * pi * u.x;
   // From the top of the cap, 1, down to its rim, -stretched.z: never quite the rim itself.
@@ -16,29 +16,34 @@ vec3 sample_visible_normal(vec3 view, float alpha, vec2 u) {
   return normalize(vec3(alpha * half_vector.xy, max(half_vector.z, 1e-7)));
 }
 
+vec3 sample_visible_normal(vec3 view, float alpha, vec2 u) {
+  return sample_visible_normal(view, vec2(alpha), u);
+}
+
 /// Smith's masking of one direction, G1.
-float smith_masking(float cosine, float alpha) {
-  float a2 = alpha * alpha;
-  return 2.0 * cosine / (cosine + sqrt(cosine * cosine * (1.0 - a2) + a2));
+float smith_masking(vec3 direction, vec2 alpha) {
+  return 2.0 * direction.z / (direction.z + masked_length(direction, alpha));
 }
 
 /// Density per solid angle of the reflected direction `light` when its normal came from
 /// sample_visible_normal: G1(v) D(h) / (4 n.v).
-float visible_normal_pdf(vec3 view, vec3 light, float alpha) {
+float visible_normal_pdf(vec3 view, vec3 light, vec2 alpha) {
   vec3 half_vector = normalize(view + light);
   if (half_vector.z <= 0.0) return 0.0;
-  return smith_masking(view.z, alpha) * ggx_distribution(min(half_vector.z, 1.0), alpha) /
-         (4.0 * view.z);
+  return smith_masking(view, alpha) * ggx_distribution(half_vector, alpha) / (4.0 * view.z);
 }
 
 /// What a sample weighs apart from Fresnel's term, G2 / G1(v): brdf x cosine / pdf. Directions
 /// below the horizon have been masked: 0.
-float visible_normal_weight(vec3 view, vec3 light, float alpha) {
+float visible_normal_weight(vec3 view, vec3 light, vec2 alpha) {
   if (light.z <= 0.0) return 0.0;
-  float a2 = alpha * alpha;
-  float toward_view = sqrt(view.z * view.z * (1.0 - a2) + a2);
-  float toward_light = sqrt(light.z * light.z * (1.0 - a2) + a2);
+  float toward_view = masked_length(view, alpha);
+  float toward_light = masked_length(light, alpha);
   return light.z * (view.z + toward_view) / (light.z * toward_view + view.z * toward_light);
+}
+
+float visible_normal_weight(vec3 view, vec3 light, float alpha) {
+  return visible_normal_weight(view, light, vec2(alpha));
 }
 
 /// The specular signal is radiance / this: what its noise has to do with the surface's colour is
@@ -55,6 +60,32 @@ vec3 reflecting_normal(SurfaceMaterial m, vec3 normal) {
   if (above >= least || dot(m.eye, m.geometric) <= 0.0) return normal;
   vec3 lifted = normalize(reflected + m.geometric * (least - above));
   return normalize(m.eye + lifted);
+}
+
+/// The frame of a specular lobe, whose x is the grain where it has one, and the eye in it.
+struct LobeFrame {
+  vec3 tangent;
+  vec3 bitangent;
+  vec3 normal;
+  vec3 view;
+  vec2 alpha;
+};
+
+LobeFrame lobe_frame(SurfaceMaterial m, bool of_coat) {
+  LobeFrame f;
+  f.normal = reflecting_normal(m, of_coat ? m.coat_normal : m.normal);
+  float roughness = of_coat ? m.coat_roughness : m.roughness;
+  f.alpha = vec2(roughness * roughness);
+  if (!of_coat && has_grain(m)) {
+    f.alpha = lobe_alpha(roughness, m.anisotropy);
+    f.tangent = grain_about(f.normal, m.grain);
+    f.bitangent = cross(f.normal, f.tangent);
+  } else {
+    orthonormal_basis(f.normal, f.tangent, f.bitangent);
+  }
+  f.view = normalize(vec3(dot(m.eye, f.tangent), dot(m.eye, f.bitangent),
+                          max(dot(m.eye, f.normal), 1e-3)));
+  return f;
 }
 
 /// One direction of the specular lobe, world space, and what its light is multiplied by: BRDF x cos
@@ -84,21 +115,16 @@ SpecularSample sample_specular(SurfaceMaterial m, vec2 u) {
     u.x = coated ? u.x / of_coat : (u.x - of_coat) / lobe_probability;
     if (coated) s.roughness = m.coat_roughness;
   }
-  vec3 normal = reflecting_normal(m, coated ? m.coat_normal : m.normal);
-  vec3 tangent, bitangent;
-  orthonormal_basis(normal, tangent, bitangent);
-  float alpha = s.roughness * s.roughness;
-  vec3 view = vec3(dot(m.eye, tangent), dot(m.eye, bitangent), max(dot(m.eye, normal), 1e-3));
-  view = normalize(view);
-  vec3 microfacet = sample_visible_normal(view, alpha, u);
-  float v_dot_h = dot(view, microfacet);
-  vec3 light = 2.0 * v_dot_h * microfacet - view;
-  s.direction = normalize(tangent * light.x + bitangent * light.y + normal * light.z);
+  LobeFrame f = lobe_frame(m, coated);
+  vec3 microfacet = sample_visible_normal(f.view, f.alpha, u);
+  float v_dot_h = dot(f.view, microfacet);
+  vec3 light = 2.0 * v_dot_h * microfacet - f.view;
+  s.direction = normalize(f.tangent * light.x + f.bitangent * light.y + f.normal * light.z);
   bool open = dot(s.direction, m.geometric) > 0.0;
   vec3 reflectance = coated ? vec3(coat_reflectance(m, v_dot_h)) : microfacet_reflectance(m, v_dot_h);
-  s.weight = open ? reflectance * (visible_normal_weight(view, light, alpha) / lobe_probability)
+  s.weight = open ? reflectance * (visible_normal_weight(f.view, light, f.alpha) / lobe_probability)
                   : vec3(0.0);
-  s.density = lobe_probability * visible_normal_pdf(view, light, max(alpha, 1e-4));
+  s.density = lobe_probability * visible_normal_pdf(f.view, light, max(f.alpha, vec2(1e-4)));
   return s;
 }
 

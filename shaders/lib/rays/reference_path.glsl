@@ -47,12 +47,10 @@ float path_number(ivec2 pixel, uint round, uint which) {
   return random_number(uvec2(pixel), frame.sample_index, dimension(round, which), frame.seed);
 }
 
-/// Whether a path goes straight on through a blended surface; its throughput becomes that of the
-/// way it takes.
-bool passes_through(HitSurface s, SurfaceMaterial m, ivec2 pixel, uint round,
-                    inout vec3 throughput) {
+/// Whether a path goes straight on through a blended surface, `behind` which that fraction is seen;
+/// its throughput becomes that of the way it takes.
+bool passes_through(HitSurface s, vec3 behind, ivec2 pixel, uint round, inout vec3 throughput) {
   if (!scene_has(scene_blends) || !is_blended(s)) return false;
-  vec3 behind = seen_behind(s, m);
   float pass_probability = dot(behind, vec3(1.0 / 3.0));
   bool passes = path_number(pixel, round, 0u) < pass_probability;
   throughput *= passes ? behind / pass_probability : vec3(s.alpha / (1.0 - pass_probability));

@@ -57,7 +57,7 @@ void store(ivec2 pixel, Hit hit, HitSurface s) {
   float unlit = (s.flags & material_unlit) != 0u ? 1.0 : 0.0;
   float roughness = s.roughness;
 #ifdef GBUFFER_LAYERED
-  imageStore(surface_layers, pixel, pack_layer(s.layer, roughness));
+  imageStore(surface_layers, pixel, pack_layer(s.layer, roughness, s.normal));
   roughness = smoother_roughness(s.layer, roughness);
 #endif
   imageStore(surface, pixel, vec4(roughness, s.metallic, unlit, 0.0));

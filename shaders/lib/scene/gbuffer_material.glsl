@@ -10,11 +10,13 @@ SurfaceMaterial material_at(ivec2 pixel) {
   vec4 color = imageLoad(base_color, pixel);
   vec4 packed_surface = imageLoad(surface, pixel);
   float roughness = packed_surface.x;
+  vec3 normal = octahedral_decode(encoded.xy);
   SurfaceLayer layer = plain_layer();
-  if (scene_has(scene_layers)) layer = unpack_layer(imageLoad(surface_layers, pixel), roughness);
-  return surface_material(color.rgb * color.rgb, packed_surface.y, roughness,
-                          octahedral_decode(encoded.xy), octahedral_decode(encoded.zw),
-                          to_eye(pixel), layer);
+  if (scene_has(scene_layers)) {
+    layer = unpack_layer(imageLoad(surface_layers, pixel), normal, roughness);
+  }
+  return surface_material(color.rgb * color.rgb, packed_surface.y, roughness, normal,
+                          octahedral_decode(encoded.zw), to_eye(pixel), layer);
 }
 
 bool is_unlit(ivec2 pixel) { return imageLoad(surface, pixel).z > 254.5 / 255.0; }

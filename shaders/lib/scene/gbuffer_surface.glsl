@@ -42,7 +42,10 @@ layout(set = 2, binding = 11) uniform sampler2D sheen_color_map;
 layout(set = 2, binding = 12) uniform sampler2D sheen_roughness_map;
 layout(set = 2, binding = 13) uniform sampler2D transmission_map;
 layout(set = 2, binding = 14) uniform sampler2D thickness_map;
-layout(set = 2, binding = 15, std140) uniform LayerBlock { MaterialLayer layer; };
+layout(set = 2, binding = 15) uniform sampler2D iridescence_map;
+layout(set = 2, binding = 16) uniform sampler2D film_map;
+layout(set = 2, binding = 17) uniform sampler2D anisotropy_map;
+layout(set = 2, binding = 18, std140) uniform LayerBlock { MaterialLayer layer; };
 #endif
 
 // No condition here hangs on constants and uniforms alone: lavapipe would make a new shader of
@@ -57,17 +60,23 @@ vec2 slot_uv(TextureSlot slot) {
 /// What the size shown needs of a texture.
 vec4 detail(sampler2D map, vec2 uv) { return texture(map, uv, log2(frame.texture_footprint)); }
 
+/// Unit vectors of the front face's tangent plane; false: the vertices have no tangent.
+bool tangent_plane(vec3 normal, out vec3 tangent, out vec3 bitangent) {
+  tangent = world_tangent.xyz - normal * dot(normal, world_tangent.xyz);
+  float size = dot(tangent, tangent);
+  tangent *= inversesqrt(max(size, 1e-12));
+  bitangent = cross(normal, tangent) * world_tangent.w;
+  return size >= 1e-12;
+}
+
 /// A normal map's texel about the front face's `normal`; a back face reverses the result as a
 /// whole.
 vec3 mapped_normal(vec3 normal, vec3 texel, float scale, uint map) {
   texel = texel * 2.0 - 1.0;
   // Without a map the normal stays: a whole number divides to 1 only by itself.
   texel.xy *= scale * (1.0 - float(map / no_texture));
-  vec3 tangent = world_tangent.xyz - normal * dot(normal, world_tangent.xyz);
-  float size = dot(tangent, tangent);
-  if (size < 1e-12) return normal;
-  tangent *= inversesqrt(size);
-  vec3 bitangent = cross(normal, tangent) * world_tangent.w;
+  vec3 tangent, bitangent;
+  if (!tangent_plane(normal, tangent, bitangent)) return normal;
   return normalize(tangent * texel.x + bitangent * texel.y + normal * texel.z);
 }
 
@@ -90,8 +99,14 @@ float exact_view_z(vec3 geometric) {
 }
 
 #ifdef GBUFFER_LAYERED
+/// Unit vector toward the eye.
+vec3 eye_here() {
+  float perspective = 1.0 - flag(frame.flags, frame_orthographic);
+  return normalize(mix(frame.inverse_view[2].xyz, frame.eye.xyz - world_point, perspective));
+}
+
 /// At the front face's `normal`.
-SurfaceLayer layer_here(vec3 normal) {
+SurfaceLayer layer_here(vec3 normal, out ThinFilm film) {
   LayerTexels texels;
   texels.specular = detail(specular_map, slot_uv(layer.specular_texture)).a;
   texels.specular_color = detail(specular_color_map, slot_uv(layer.specular_color_texture)).rgb;
@@ -101,10 +116,19 @@ SurfaceLayer layer_here(vec3 normal) {
   texels.sheen_roughness = detail(sheen_roughness_map, slot_uv(layer.sheen_roughness_texture)).a;
   texels.transmission = detail(transmission_map, slot_uv(layer.transmission_texture)).r;
   texels.thickness = detail(thickness_map, slot_uv(layer.thickness_texture)).g;
+  texels.iridescence = detail(iridescence_map, slot_uv(layer.iridescence_texture)).r;
+  texels.film = detail(film_map, slot_uv(layer.film_texture)).g;
+  vec3 grain_texel = detail(anisotropy_map, slot_uv(layer.anisotropy_texture)).rgb;
+  texels.anisotropy = grain_texel.b;
+  film = thin_film(layer, texels);
+  vec2 in_plane = grain_in_plane(layer, grain_texel.rg);
+  vec3 tangent, bitangent;
+  bool has_tangent = tangent_plane(normal, tangent, bitangent);
+  vec3 grain = has_tangent ? tangent * in_plane.x + bitangent * in_plane.y : vec3(0.0);
   vec3 coat_texel = detail(coat_normal_map, slot_uv(layer.coat_normal_texture)).xyz;
   return surface_layer(layer, texels,
                        mapped_normal(normal, coat_texel, layer.coat_normal_scale,
-                                     layer.coat_normal_texture.texture));
+                                     layer.coat_normal_texture.texture), grain);
 }
 #endif
 
@@ -114,7 +138,8 @@ void main() {
   vec3 across = cross(dFdy(world_point), dFdx(world_point));
   vec3 vertex_normal = normalize(world_normal);
 #ifdef GBUFFER_LAYERED
-  SurfaceLayer extended = layer_here(vertex_normal);
+  ThinFilm film;
+  SurfaceLayer extended = layer_here(vertex_normal, film);
   color.a = mix(color.a, 1.0, flag(material.flags, material_whole_alpha)) *
             (1.0 - extended.transmission);
 #endif
@@ -135,15 +160,17 @@ void main() {
   float occlusion = detail(occlusion_map, slot_uv(material.occlusion_texture)).r;
 
   normals = vec4(octahedral_encode(shading), octahedral_encode(geometric));
-  base_color = vec4(sqrt(clamp(color.rgb, 0.0, 1.0)),
-                    mix(1.0, occlusion, material.occlusion_strength));
   float roughness = material.roughness * packed_surface.g;
+  float metallic = material.metallic * packed_surface.b;
+  vec3 base = clamp(color.rgb, 0.0, 1.0);
 #ifdef GBUFFER_LAYERED
   extended.coat_normal *= side;
-  surface_layers = pack_layer(extended, roughness);
+  add_film(film, material_n_dot_v(shading, eye_here()), metallic, extended, base);
+  surface_layers = pack_layer(extended, roughness, shading);
   roughness = smoother_roughness(extended, roughness);
 #endif
-  surface = vec4(roughness, material.metallic * packed_surface.b,
+  base_color = vec4(sqrt(base), mix(1.0, occlusion, material.occlusion_strength));
+  surface = vec4(roughness, metallic,
                  flag(material.flags, material_unlit), 0.0);
   vec2 uv_now = clip_now.xy / clip_now.z * 0.5;
   vec2 uv_before = clip_before.xy / clip_before.z * 0.5;

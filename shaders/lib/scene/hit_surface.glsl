@@ -119,19 +119,25 @@ vec4 slot_texel(TextureSlot slot, TextureLookup lookup) {
                                            dot(slot.transform_row1.xyz, uv)), lod);
 }
 
+/// Unit vectors of the front face's tangent plane; false: the vertices have no tangent.
+bool tangent_plane(HitTriangle t, vec3 normal, out vec3 tangent, out vec3 bitangent) {
+  tangent = transform_direction(t, t.a.tangent.xyz) * t.weights.x +
+            transform_direction(t, t.b.tangent.xyz) * t.weights.y +
+            transform_direction(t, t.c.tangent.xyz) * t.weights.z;
+  tangent -= normal * dot(normal, tangent);
+  float size = dot(tangent, tangent);
+  tangent *= inversesqrt(max(size, 1e-12));
+  bitangent = cross(normal, tangent) * (t.a.tangent.w * t.handedness);
+  return size >= 1e-12;
+}
+
 /// A normal map about the front face's `normal`.
 vec3 mapped_normal(HitTriangle t, TextureSlot map, float scale, TextureLookup lookup, vec3 normal) {
   if (map.texture == no_texture) return normal;
   vec3 texel = slot_texel(map, lookup).xyz * 2.0 - 1.0;
   texel.xy *= scale;
-  vec3 tangent = transform_direction(t, t.a.tangent.xyz) * t.weights.x +
-                 transform_direction(t, t.b.tangent.xyz) * t.weights.y +
-                 transform_direction(t, t.c.tangent.xyz) * t.weights.z;
-  tangent -= normal * dot(normal, tangent);
-  float size = dot(tangent, tangent);
-  if (size < 1e-12) return normal;
-  tangent *= inversesqrt(size);
-  vec3 bitangent = cross(normal, tangent) * (t.a.tangent.w * t.handedness);
+  vec3 tangent, bitangent;
+  if (!tangent_plane(t, normal, tangent, bitangent)) return normal;
   return normalize(tangent * texel.x + bitangent * texel.y + normal * texel.z);
 }
 
@@ -139,9 +145,18 @@ vec4 vertex_color(Vertex v) {
   return vec4(unpackUnorm2x16(v.color_rg), unpackUnorm2x16(v.color_ba));
 }
 
-/// What extensions add at the front face's `normal`.
-SurfaceLayer evaluate_layer(HitTriangle t, TextureLookup lookup, vec3 normal) {
+/// The direction in which the surface is rougher; 0: none.
+vec3 grain_of(HitTriangle t, MaterialLayer from, vec2 texel, vec3 normal) {
+  vec3 tangent, bitangent;
+  if (!tangent_plane(t, normal, tangent, bitangent)) return vec3(0.0);
+  vec2 grain = grain_in_plane(from, texel);
+  return tangent * grain.x + bitangent * grain.y;
+}
+
+/// What extensions add at the front face's `normal`, without the film.
+SurfaceLayer evaluate_layer(HitTriangle t, TextureLookup lookup, vec3 normal, out ThinFilm film) {
   uint number = materials[t.material].layer;
+  film = ThinFilm(0.0, 1.0, 0.0);
   if (number == 0u) return plain_layer();
   MaterialLayer from = layers[number];
   LayerTexels texels;
@@ -153,9 +168,19 @@ SurfaceLayer evaluate_layer(HitTriangle t, TextureLookup lookup, vec3 normal) {
   texels.sheen_roughness = slot_texel(from.sheen_roughness_texture, lookup).a;
   texels.transmission = slot_texel(from.transmission_texture, lookup).r;
   texels.thickness = slot_texel(from.thickness_texture, lookup).g;
+  texels.iridescence = slot_texel(from.iridescence_texture, lookup).r;
+  texels.film = slot_texel(from.film_texture, lookup).g;
+  vec3 grain_texel = vec3(1.0);
+  vec3 grain = vec3(0.0);
+  if (from.anisotropy > 0.0) {
+    grain_texel = slot_texel(from.anisotropy_texture, lookup).rgb;
+    grain = grain_of(t, from, grain_texel.rg, normal);
+  }
+  texels.anisotropy = grain_texel.b;
+  film = thin_film(from, texels);
   return surface_layer(from, texels,
                        mapped_normal(t, from.coat_normal_texture, from.coat_normal_scale, lookup,
-                                     normal));
+                                     normal), grain);
 }
 
 void evaluate_material(inout HitSurface s, HitTriangle t, TextureLookup lookup) {
@@ -204,8 +229,10 @@ HitSurface hit_surface(Hit hit, vec3 direction, float width) {
   evaluate_material(s, t, lookup);
   s.layer = plain_layer();
   if (scene_has(scene_layers)) {
-    s.layer = evaluate_layer(t, lookup, vertex_normal);
+    ThinFilm film;
+    s.layer = evaluate_layer(t, lookup, vertex_normal, film);
     s.layer.coat_normal *= side;
+    add_film(film, material_n_dot_v(s.normal, -direction), s.metallic, s.layer, s.base_color);
   }
   return s;
 }

@@ -79,6 +79,7 @@ class KernelComparison {
     made.settings.specular.max_roughness = 0.4f;  // some surfaces reflect the environment alone
     made.settings.specular.enabled = made.settings.shadows.enabled =
         made.settings.ambient.occlusion = !which.unoccluded;
+    made.settings.transmission.refraction = !which.unoccluded;
     return made;
   }
   render::Composed compose(bool host, const render::GBuffer& gbuffer, const Side& side) {
@@ -136,16 +137,24 @@ class LayersKernel : public testing::Test {
 
 TEST_F(LayersKernel, MatchesShadersForEveryLayer) {
   const std::pair<const char*, scene::MaterialLayers (*)(SceneBuilder&)> layers[] = {
-      {"coat", coat}, {"sheen", sheen}, {"specular", specular}, {"all, textured", all_of_them}};
+      {"coat", coat},
+      {"sheen", sheen},
+      {"specular", specular},
+      {"film", film},
+      {"brushed", brushed},
+      {"brushed film, textured", brushed_film},
+      {"all, textured", all_of_them}};
   for (const auto& [name, made] : layers) {
     KernelComparison({.layers = made}).expect_equal(name);
   }
   KernelComparison({.layers = all_of_them, .orthographic = true}).expect_equal("orthographic");
+  KernelComparison({.layers = film, .orthographic = true}).expect_equal("film, orthographic");
 }
 
 TEST_F(LayersKernel, MatchesShadersForAreaLights) {
   KernelComparison({.areas = true}).expect_equal("plain");
   KernelComparison({.layers = all_of_them, .areas = true}).expect_equal("layers");
+  KernelComparison({.layers = brushed_film, .areas = true}).expect_equal("brushed film");
 }
 
 TEST_F(LayersKernel, MatchesShadersForBlendedSurfaces) {

@@ -8,6 +8,14 @@
 namespace heliograph::test {
 namespace {
 
+scene::MaterialLayers colored_prism(SceneBuilder&) {
+  return {.transmission = 0.9f,
+          .thickness = 0.4f,
+          .attenuation_distance = 0.5f,
+          .attenuation_color = {0.8f, 0.6f, 0.9f},
+          .dispersion = 2.0f};
+}
+
 /// A sample of full global illumination by the shader and by the host kernel.
 class PathComparison {
  public:
@@ -68,6 +76,9 @@ TEST_F(TracePathsKernel, MatchesShader) {
       {"coat", {.layers = coat}},
       {"sheen", {.layers = sheen}},
       {"specular", {.layers = specular}},
+      {"film", {.layers = film}},
+      {"brushed", {.layers = brushed}},
+      {"brushed film, textured", {.layers = brushed_film, .areas = true, .shines = true}},
       {"all, textured, emissive", {.layers = all_of_them, .areas = true, .shines = true}}};
   for (const auto& [name, which] : cases) {
     for (const int bounces : {1, 4}) {
@@ -85,6 +96,7 @@ TEST_F(TracePathsKernel, MatchesShaderBehindBlendedSurfaces) {
   const std::pair<const char*, LayeredCase> cases[] = {
       {"plain", {.alpha = 0.6f}},
       {"transmission", {.layers = transmission}},
+      {"dispersion", {.layers = colored_prism}},
       {"layers", {.layers = all_of_them, .areas = true, .alpha = 0.6f, .shines = true}}};
   for (const auto& [name, which] : cases) {
     // Bits of the rays decide what stops them: means are all that can be compared.

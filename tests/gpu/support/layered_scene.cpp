@@ -44,6 +44,27 @@ scene::MaterialLayers sheen(SceneBuilder&) {
 scene::MaterialLayers specular(SceneBuilder&) {
   return {.specular = 0.6f, .specular_color = {1.0f, 0.6f, 2.5f}};
 }
+scene::MaterialLayers film(SceneBuilder&) {
+  return {.iridescence = 0.9f, .iridescence_ior = 1.8f, .iridescence_thickness_maximum = 350.0f};
+}
+scene::MaterialLayers brushed(SceneBuilder&) {
+  return {.anisotropy = 0.7f, .anisotropy_rotation = 0.6f};
+}
+scene::MaterialLayers brushed_film(SceneBuilder& builder) {
+  scene::MaterialLayers layers = film(builder);
+  layers.iridescence_thickness_minimum = 200.0f;
+  layers.iridescence_texture.texture = add_waves(builder, false, 0.5);
+  layers.iridescence_thickness_texture.texture = add_waves(builder, false, 1.5);
+  layers.anisotropy = 0.8f;
+  layers.anisotropy_rotation = -0.3f;
+  layers.anisotropy_texture.texture = add_waves(builder, false, 2.5);
+  layers.anisotropy_texture.uv_set = 1;
+  layers.clearcoat = 0.5f;
+  layers.clearcoat_roughness = 0.2f;
+  layers.sheen_color = {0.2f, 0.3f, 0.1f};
+  layers.sheen_roughness = 0.5f;
+  return layers;
+}
 scene::MaterialLayers transmission(SceneBuilder&) {
   return {.transmission = 0.6f,
           .thickness = 0.2f,

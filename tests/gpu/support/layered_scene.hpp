@@ -9,6 +9,10 @@ namespace heliograph::test {
 scene::MaterialLayers coat(SceneBuilder& builder);
 scene::MaterialLayers sheen(SceneBuilder& builder);
 scene::MaterialLayers specular(SceneBuilder& builder);
+scene::MaterialLayers film(SceneBuilder& builder);
+scene::MaterialLayers brushed(SceneBuilder& builder);
+/// A textured film on a textured grain, under a coat and sheen.
+scene::MaterialLayers brushed_film(SceneBuilder& builder);
 scene::MaterialLayers transmission(SceneBuilder& builder);
 /// With a texture in every slot but that of the transmission, which keeps to its own surface.
 scene::MaterialLayers all_of_them(SceneBuilder& builder);

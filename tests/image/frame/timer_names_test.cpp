@@ -87,8 +87,12 @@ TEST(TimerNames, AreThoseOfShaderFiles) {
   shared::Material glass = surface({0.5f, 0.7f, 0.5f}, 0.1f);
   glass.base_color.w = 0.4f;
   glass.flags = shared::material_alpha_blend;
+  scene::MaterialLayers volume;
+  volume.transmission = 0.5f;
+  volume.thickness = 0.1f;
   builder.place(builder.add_sphere(1.0f, surface(glm::vec3(0.5f))));
-  builder.place(builder.add_quad({{{-1, -1, 2}, {1, -1, 2}, {1, 1, 2}, {-1, 1, 2}}}, glass));
+  builder.place(builder.add_quad({{{-1, -1, 2}, {1, -1, 2}, {1, 1, 2}, {-1, 1, 2}}},
+                                 builder.with_layers(glass, volume)));
   builder.add_sun({-0.6f, -1, -0.4f}, glm::vec3(2.5f), 1.0f);
   RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(1.0f)),
                   look({0, 0, 5}, {0, 0, 0}), 32, 18);

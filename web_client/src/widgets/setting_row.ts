@@ -45,6 +45,8 @@ const unitSymbols: Record<string, string> = {
   milliseconds: "ms",
   metres: "m",
   meters: "m",
+  nanometres: "nm",
+  radians: "rad",
   degrees: "°",
   pixels: "px",
   percent: "%",

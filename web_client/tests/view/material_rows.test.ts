@@ -24,10 +24,17 @@ const patch: Required<MaterialPatch> = {
   clearcoat_normal_scale: 1,
   sheen_color: [0, 0, 0],
   sheen_roughness: 0,
+  iridescence: 0,
+  iridescence_ior: 1.3,
+  iridescence_thickness_minimum: 100,
+  iridescence_thickness_maximum: 400,
+  anisotropy: 0,
+  anisotropy_rotation: 0,
   transmission: 1,
   thickness: 0,
   attenuation_distance: 0,
   attenuation_color: [1, 1, 1],
+  dispersion: 0,
 };
 
 test("every factor of a material has one row", () => {

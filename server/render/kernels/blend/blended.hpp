@@ -106,6 +106,49 @@ struct BlendedGatherJob : FrameJob<BlendedGatherBindings, shared::RadianceCacheC
 };
 void blended_gather(const BlendedGatherJob& job);
 
+/// shaders/blend/blended_enter.comp
+template <class Stage>
+struct BlendedEnterBindings {
+  RaySource<Stage> lit;
+  gpu::ReadBuffer<Stage, shared::Hit> chosen;  // by pixel
+  gpu::Read<Stage> radiance;                   // rgba32f; a: sum of all weights
+  gpu::Read<Stage> transmittance;              // rgba32f; a: weight of the chosen surface
+  RaySink<Stage> inside, refracted;            // into volumes; through thin walls
+};
+struct BlendedEnterJob : FrameJob<BlendedEnterBindings> {
+  LitScene lit_scene;
+};
+void blended_enter(const BlendedEnterJob& job);
+
+/// shaders/blend/blended_refract.comp
+template <class Stage>
+struct BlendedRefractBindings {
+  RaySource<Stage> inside;
+  gpu::ReadBuffer<Stage, shared::Hit> hits;
+  gpu::ReadBuffer<Stage, shared::Hit> chosen;  // by pixel
+  RaySink<Stage> next, refracted;
+};
+struct BlendedRefractConstants {
+  std::uint32_t round;
+  std::uint32_t last_round;
+};
+struct BlendedRefractJob : FrameJob<BlendedRefractBindings, BlendedRefractConstants> {
+  LitScene lit_scene;
+};
+void blended_refract(const BlendedRefractJob& job);
+
+/// shaders/blend/blended_through.comp
+template <class Stage>
+struct BlendedThroughBindings {
+  RaySource<Stage> rays;
+  gpu::ReadWrite<Stage> radiance;  // rgba32f
+  gpu::ReadWrite<Stage> specular;  // rgba32f; a: how far the rays went
+};
+struct BlendedThroughJob : FrameJob<BlendedThroughBindings> {
+  RadianceMap background;  // what the camera sees behind the scene
+};
+void blended_through(const BlendedThroughJob& job);
+
 /// shaders/blend/blended_over.comp
 template <class Stage>
 struct BlendedOverBindings {

@@ -12,6 +12,7 @@
 #include "render/kernels/gbuffer/gbuffer_shading.hpp"
 #include "render/kernels/simd/environment.hpp"
 #include "render/kernels/simd/lights.hpp"
+#include "render/kernels/simd/material/transmission.hpp"
 #include "render/kernels/simd/random.hpp"
 #include "render/kernels/simd/tiles.hpp"
 
@@ -62,8 +63,12 @@ class BlendedLayer {
     Float3 own = keep(unlit, s.base_color);
     if (enabled(shared::frame_emissive)) own = own + s.emissive;
     const Mask has_none = hn::Eq(light.w, zero()), lit = hn::AndNot(unlit, lanes);
-    if (!none(lit)) choose(pixel, hit, open_light(s, m, lit), throughput, lit, light.w, seen.w);
-    const Float3 after = before * seen_behind(s, m);
+    const Mask bends = bends_light(frame_, s, boundary_of(scene_.scene, hit, s, direction));
+    if (!none(lit)) {
+      choose(pixel, hit, open_light(s, m, lit, bends), throughput, lit, light.w, seen.w);
+    }
+    const Float open = one() - s.alpha;
+    const Float3 after = before * select(bends, Float3{open, open, open}, seen_behind(s, m));
     const Float half = number(0.5f);
     Found found;
     found.first_lit = hn::And(lit, hn::And(has_none, hn::Gt(light.w, zero())));
@@ -101,8 +106,8 @@ class BlendedLayer {
     return hn::Gt(largest_of(transmittance), number(least_seen));
   }
 
-  /// As if nothing occluded it.
-  HWY_INLINE Float3 open_light(const Surface& s, const Material& m, Mask lanes) const {
+  /// As if nothing occluded it. `bends`: what is behind it shows along a ray of its own.
+  HWY_INLINE Float3 open_light(const Surface& s, const Material& m, Mask lanes, Mask bends) const {
     Float3 sum = numbers(0.0f);
     if (enabled(shared::frame_direct)) {
       sum = direct_light(tag, scene_.lights, scene_.tables.ltc, m, s.position, lanes);
@@ -114,6 +119,10 @@ class BlendedLayer {
       sum = sum + environment_specular(m, [&](const Float3& normal, Float roughness) HWY_ATTR {
               return environment_.reflection(reflect(-m.eye, normal), roughness);
             });
+    }
+    if constexpr (Surface::layered) {
+      if (none(bends)) return sum;
+      sum = sum + keep(bends, m.transmitted * environment_.reflection(-m.eye, m.roughness));
     }
     return sum;
   }

@@ -4,6 +4,7 @@
 #define HWY_TARGET_INCLUDE "render/kernels/blend/blended_light.cpp"
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
+#include "render/kernels/blend/chosen_hit.hpp"
 #include "render/kernels/simd/environment.hpp"
 #include "render/kernels/simd/lights.hpp"
 #include "render/kernels/simd/material/hit_material.hpp"
@@ -42,9 +43,8 @@ class BlendedLight {
     const PixelLanes pixel = unpack_pixel(view.pixel);
     const Mask lanes = float_mask(hn::Lt(hn::Iota(integer_tag, first), integer(last)));
     Float3 throughput;
-    const HitLanes hit = chosen_at(pixel, lanes, throughput);
+    const HitLanes hit = chosen_hit(job_, pixel, lanes, throughput);
     const Float4 seen = gathered4(job_.transmittance, pixel);
-    throughput = throughput * (gathered_last(job_.radiance, pixel) / seen.w);
     const Float width = hn::MulAdd(hit.t, number(cone_.y), number(cone_.x));
     const auto s = hit_surface<Surface, false>(job_.lit_scene.scene, hit, view.direction, width);
     const Material m = material_of(s, view.direction, tables_);
@@ -85,23 +85,6 @@ class BlendedLight {
 
  private:
   bool enabled(std::uint32_t flag) const { return (job_.frame.flags & flag) != 0; }
-
-  /// The hits that the pixels chose and what of their light reaches the eye.
-  HWY_INLINE HitLanes chosen_at(const PixelLanes& pixel, Mask lanes, Float3& throughput) const {
-    const Integer across = integer(static_cast<int>(job_.frame.extent.x));
-    const Records records(job_.chosen, hn::Add(hn::Mul(pixel.y, across), pixel.x),
-                          sizeof(shared::Hit) / 4);
-    const Float4 front = records.four(0), back = records.four(4);
-    throughput = {back.y, back.z, back.w};
-    HitLanes hit;
-    hit.met = lanes;
-    hit.t = front.x;
-    hit.instance = as_integer(front.y);
-    hit.triangle = as_integer(front.z);
-    hit.u = front.w;
-    hit.v = back.x;
-    return hit;
-  }
 
   /// Light of all lights times visibility, estimated with one ray to a randomly chosen light.
   HWY_INLINE void add_shadow(const Surface& s, const Material& m, const PixelLanes& pixel,

@@ -8,6 +8,7 @@
 #endif
 
 #include "render/kernels/simd/material/hit_material.hpp"
+#include "render/kernels/simd/material/packed_layer.hpp"
 #include "render/kernels/simd/ray_writer.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -83,8 +84,44 @@ HWY_NOINLINE void store_texels(const Job& job, const AllTexels& texels, const Pi
   }
 }
 
+/// encode_grain() of shaders/lib/scene/layers.glsl
+HWY_INLINE Float encode_grain(const Float3& grain, const Float3& normal) {
+  Float3 tangent, bitangent;
+  storage_basis(normal, tangent, bitangent);
+  const Float x = dot(grain, tangent), y = dot(grain, bitangent);
+  const Float share = y / at_least(hn::Abs(x) + hn::Abs(y), 1e-12f);
+  const Float turned = select(hn::Ge(x, zero()), share, hn::Neg(share));
+  return hn::MulAdd(turned, number(0.5f), number(0.5f));
+}
+
+/// Replaces `packed` in lanes with grain.
+HWY_INLINE void pack_grain(const SurfaceLayer<Float>& layer, const Float3& normal,
+                           const Float2& coat_normal, Float4& packed) {
+  const Mask grained = hn::Gt(layer.anisotropy, zero());
+  if (none(grained)) return;
+  const auto steps = [](Float value, float most) HWY_ATTR {
+    return truncated(hn::MulAdd(clamped(value, 0.0f, 1.0f), number(most), number(0.5f)));
+  };
+  const auto half = [](Float value)
+                        HWY_ATTR { return hn::MulAdd(value, number(0.5f), number(0.5f)); };
+  const Integer coat = hn::Or(steps(half(coat_normal.x), 4094.0f),
+                              hn::ShiftLeft<12>(steps(half(coat_normal.y), 4094.0f)));
+  const Integer strength = steps(layer.anisotropy, 255.0f);
+  const Integer direction = steps(encode_grain(layer.grain, normal), 255.0f);
+  const auto sixth = [&](Float value) HWY_ATTR { return steps(value, 63.0f); };
+  const Integer sheen = hn::Or(
+      hn::Or(sixth(hn::Sqrt(layer.sheen.x)), hn::ShiftLeft<6>(sixth(hn::Sqrt(layer.sheen.y)))),
+      hn::Or(hn::ShiftLeft<12>(sixth(hn::Sqrt(layer.sheen.z))),
+             hn::ShiftLeft<18>(sixth(layer.sheen_roughness))));
+  const Integer flag = integer(static_cast<int>(packed_grain));
+  packed.x = select(grained, as_float(hn::Or(as_integer(packed.x), flag)), packed.x);
+  packed.y = select(grained, as_float(hn::Or(coat, hn::ShiftLeft<24>(strength))), packed.y);
+  packed.w = select(grained, as_float(hn::Or(sheen, hn::ShiftLeft<24>(direction))), packed.w);
+}
+
 /// pack_layer() of shaders/lib/scene/layers.glsl
-HWY_INLINE Float4 pack_layer(const SurfaceLayer<Float>& layer, Float roughness) {
+HWY_INLINE Float4 pack_layer(const SurfaceLayer<Float>& layer, Float roughness,
+                             const Float3& shading_normal) {
   const auto tenth = [](Float value) HWY_ATTR {
     const Float root = hn::Sqrt(clamped(value, 0.0f, 1.0f));
     return truncated(hn::MulAdd(root, number(1023.0f), number(0.5f)));
@@ -98,10 +135,12 @@ HWY_INLINE Float4 pack_layer(const SurfaceLayer<Float>& layer, Float roughness) 
   const Integer packed_normal =
       hn::Or(hn::And(snorm(normal.x), integer(0xffff)), hn::ShiftLeft<16>(snorm(normal.y)));
   const Float3& sheen = layer.sheen;
-  return {as_float(f0), as_float(packed_normal),
-          as_float(pack_unorm8({layer.coat, layer.coat_roughness, roughness, layer.f90})),
-          as_float(pack_unorm8(
-              {hn::Sqrt(sheen.x), hn::Sqrt(sheen.y), hn::Sqrt(sheen.z), layer.sheen_roughness}))};
+  Float4 packed{as_float(f0), as_float(packed_normal),
+                as_float(pack_unorm8({layer.coat, layer.coat_roughness, roughness, layer.f90})),
+                as_float(pack_unorm8({hn::Sqrt(sheen.x), hn::Sqrt(sheen.y), hn::Sqrt(sheen.z),
+                                      layer.sheen_roughness}))};
+  pack_grain(layer, shading_normal, normal, packed);
+  return packed;
 }
 
 /// `Surface`: SurfaceLanes, or LayeredSurfaceLanes.
@@ -144,7 +183,7 @@ class GBufferShading {
     to.base_color = as_float(pack_unorm8(color));
     Float roughness = s.roughness;
     if constexpr (Surface::layered) {
-      to.layers = pack_layer(s.layer, roughness);
+      to.layers = pack_layer(s.layer, roughness, s.normal);
       const Mask coated = hn::Gt(s.layer.coat, zero());
       roughness = select(coated, hn::Min(roughness, s.layer.coat_roughness), roughness);
     }

@@ -27,11 +27,27 @@ struct PathLanes {
     const Integer flag = integer(static_cast<int>(shared::path_specular));
     return float_mask(hn::Eq(hn::And(flags, flag), flag));
   }
+  /// Of the camera's rays, perhaps refracted.
+  HWY_INLINE Mask is_seen() const {
+    const Integer flag = integer(static_cast<int>(shared::path_turned));
+    return float_mask(hn::Eq(hn::And(flags, flag), integer(0)));
+  }
+  /// Of those that have met nothing but what they went straight on through.
+  HWY_INLINE Mask is_camera_ray() const {
+    const Integer met = hn::And(flags, integer(~static_cast<int>(shared::path_kept)));
+    return float_mask(hn::Eq(met, integer(0)));
+  }
+  HWY_INLINE Integer band() const {
+    return hn::And(hn::ShiftRight<shared::path_band_shift>(flags),
+                   integer(static_cast<int>(shared::path_bands)));
+  }
+  /// Number of the layer whose volume the path is in; 0: none.
+  HWY_INLINE Integer medium() const { return hn::ShiftRight<shared::path_medium_shift>(flags); }
+  HWY_INLINE void enter(Integer medium) {
+    const Integer others = hn::And(flags, integer((1 << shared::path_medium_shift) - 1));
+    flags = hn::Or(others, hn::ShiftLeft<shared::path_medium_shift>(medium));
+  }
 };
-
-HWY_INLINE Mask is_zero(Float v) {
-  return hn::Eq(v, zero());
-}
 
 HWY_INLINE Integer pixel_index(const shared::FrameConstants& frame, const PixelLanes& p) {
   return hn::Add(hn::Mul(p.y, integer(static_cast<int>(frame.extent.x))), p.x);
@@ -101,7 +117,7 @@ class PathNumbers {
   PathNumbers(const shared::FrameConstants& frame, std::uint32_t round)
       : PathNumbers(Position{frame, 256u + 16u * round}) {}
 
-  Single passing, light, lobe, survival;
+  Single passing, light, lobe, survival, band;
   Pairs light_point, direction, sky_cell, sky_point, triangle, triangle_point;
 
  private:
@@ -113,6 +129,7 @@ class PathNumbers {
         light(of(first, 1)),
         lobe(of(first, 3)),
         survival(of(first, 5)),
+        band(of(first, 10)),
         light_point(of(first, 2)),
         direction(of(first, 4)),
         sky_cell(of(first, 6)),

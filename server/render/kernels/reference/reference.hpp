@@ -28,7 +28,8 @@ struct ReferenceBounceJob : FrameJob<ReferenceBounceBindings, shared::ReferenceC
   std::span<const EnvironmentCell> cells;  // of the environment that lights
   RadianceMap background;                  // what the camera sees behind the scene
   bool samples_emissive;                   // triangles of the scene shine
-  std::uint32_t blending;                  // RayCount::blending of shadows, sky and emissive
+  bool transmits;                          // surfaces let light pass, which is refracted
+  std::uint32_t blending;                  // RayCount::blending of shadows
   Rows rows;                               // that the rays are of
 };
 

@@ -6,6 +6,7 @@
 #include "hwy/foreach_target.h"
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/reference/path_lights.hpp"
+#include "render/kernels/reference/path_scatter.hpp"
 #include "render/kernels/reference/path_state.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -28,7 +29,8 @@ class PathVertices {
         environment_(job.frame, job.lit_scene.environment),
         cells_(job.frame, job.cells),
         numbers_(job.frame, job.constants.round),
-        lights_(job, environment_, cells_, numbers_) {}
+        lights_(job, environment_, cells_, numbers_),
+        scatter_(job, numbers_) {}
 
   void block(int first, int last, BounceBatches& to) const {
     const RayLanes ray = load_rays(job_.rays.rays, first, last);
@@ -58,7 +60,7 @@ class PathVertices {
   bool enabled(std::uint32_t flag) const { return (job_.frame.flags & flag) != 0; }
 
   HWY_INLINE Float3 at_miss(const PathLanes& path, const RayLanes& ray, Mask missed) const {
-    const Mask seen = hn::And(missed, is_zero(path.bounces));
+    const Mask seen = hn::And(missed, path.is_seen());
     Float3 light = numbers(0.0f);
     if (!none(seen)) light = background(ray, seen);
     if (all(hn::Or(seen, hn::Not(missed)))) return light;
@@ -91,13 +93,27 @@ class PathVertices {
   HWY_INLINE Float3 at_hit(RayLanes ray, const HitLanes& hit, const PixelLanes& pixel,
                            PathLanes& path, BounceBatches& to) const {
     const Float width = hn::MulAdd(path.cone_spread, hit.t, path.cone_width);
-    const auto s = hit_surface<Surface, false>(job_.lit_scene.scene, hit, ray.direction, width);
-    const Material m = material_of(s, ray.direction, tables_);
-    Mask passes = hn::And(hit.met, hn::And(is_zero(path.bounces), is_open(s, ray.direction)));
-    const Mask blended = hn::AndNot(passes, hn::And(hit.met, is_blended(s)));
-    if (!none(blended)) {
-      passes = hn::Or(passes, pass_through(s, m, pixel, blended, path.throughput));
+    auto s = hit_surface<Surface, false>(job_.lit_scene.scene, hit, ray.direction, width);
+    if constexpr (Surface::layered) {
+      // What a volume lets in is attenuated along the way through it, not at its surface.
+      const Float whole = s.layer.transmission;
+      s.layer.transmitted = {whole, whole, whole};
+      attenuate(ray, hit, path);
     }
+    const Material m = material_of(s, ray.direction, tables_);
+    Mask passes = hn::And(path.is_seen(), is_open(s, ray.direction));
+    passes = hn::And(hn::And(hit.met, passes), float_mask(hn::Eq(path.medium(), integer(0))));
+    BoundaryLanes boundary = boundary_of(job_.lit_scene.scene, hit, s, ray.direction);
+    // The camera is in no volume: whichever side it sees, it sees from outside.
+    boundary.leaving = hn::AndNot(path.is_camera_ray(), boundary.leaving);
+    const Mask caught = hn::And(boundary.leaving, hn::Not(may_scatter(path)));
+    if (!none(caught)) {
+      // Volumes keep no light of paths that end.
+      path.enter(select(caught, integer(0), path.medium()));
+      passes = hn::Or(passes, caught);
+    }
+    const Mask blended = hn::AndNot(passes, hn::And(hit.met, is_blended(s)));
+    if (!none(blended)) passes = hn::Or(passes, pass_through(s, pixel, blended, path));
     if (!none(passes)) {
       RayLanes beyond = ray;
       beyond.t_min = GBufferShading<Surface>::passed_from(hit.t);
@@ -111,22 +127,35 @@ class PathVertices {
     if (!none(lit)) {
       ray.origin = offset_origin(s.position, s.geometric, zero());
       ray.t_min = zero();
-      leave(ray, s, m, width, pixel, lit, path, to);
+      leave(ray, boundary, s, m, width, pixel, lit, path, to);
     }
     return keep(stays, own);
   }
 
-  /// Lanes whose paths go straight on through a blended surface. `throughput` becomes that of the
-  /// way they take.
-  HWY_INLINE Mask pass_through(const Surface& s, const Material& m, const PixelLanes& pixel,
-                               Mask blended, Float3& throughput) const {
-    const Float3 behind = seen_behind(s, m);
-    const Float probability = (behind.x + behind.y + behind.z) * number(1.0f / 3.0f);
-    const Mask passes = hn::And(blended, hn::Lt(numbers_.passing.at(pixel), probability));
-    const Float stopped = s.alpha / at_least(one() - probability, 1e-30f);
-    const Float3 by_way = select(passes, behind * (one() / at_least(probability, 1e-30f)),
-                                 {stopped, stopped, stopped});
-    throughput = select(blended, throughput * by_way, throughput);
+  HWY_INLINE Mask may_scatter(const PathLanes& path) const {
+    return hn::Lt(path.bounces, number(static_cast<float>(job_.constants.limit)));
+  }
+
+  /// By the volume that the rays have come through.
+  HWY_INLINE void attenuate(const RayLanes& ray, const HitLanes& hit, PathLanes& path) const {
+    const Integer medium = path.medium();
+    const Mask inside = hn::And(hit.met, float_mask(hn::Gt(medium, integer(0))));
+    if (none(inside)) return;
+    const Float3 left =
+        left_by_volume(job_.lit_scene.scene, select(inside, medium, integer(0)), hit.t - ray.t_min);
+    path.throughput = select(inside, path.throughput * left, path.throughput);
+  }
+
+  /// Lanes whose paths go straight on through a blended surface. Their throughput becomes that of
+  /// the way they take.
+  HWY_INLINE Mask pass_through(const Surface& s, const PixelLanes& pixel, Mask blended,
+                               PathLanes& path) const {
+    const Float behind = one() - s.alpha;
+    const Mask passes = hn::And(blended, hn::Lt(numbers_.passing.at(pixel), behind));
+    const Float by_way = select(passes, behind / at_least(behind, 1e-30f),
+                                s.alpha / at_least(one() - behind, 1e-30f));
+    path.throughput = select(blended, path.throughput * by_way, path.throughput);
+    if (job_.transmits) path.density = hn::IfThenZeroElse(passes, path.density);
     return passes;
   }
 
@@ -148,48 +177,49 @@ class PathVertices {
     return light + emission * weight;
   }
 
-  /// The rays from lit surfaces. `ray`: their origins. `width`: of the cones there.
-  HWY_INLINE void leave(const RayLanes& ray, const Surface& s, const Material& m, Float width,
-                        const PixelLanes& pixel, Mask lit, PathLanes& path,
-                        BounceBatches& to) const {
-    const Vertex<Material> vertex{m, s.position, path.throughput, pixel};
-    if (enabled(shared::frame_direct)) lights_.add_light(vertex, ray, lit, to.shadows);
-    const Mask goes_on =
-        hn::And(lit, hn::Lt(path.bounces, number(static_cast<float>(job_.constants.limit))));
+  /// The rays from lit surfaces. `ray`: their origins, and the directions that they come from.
+  /// `width`: of the cones there.
+  HWY_INLINE void leave(RayLanes ray, const BoundaryLanes& boundary, const Surface& s,
+                        const Material& m, Float width, const PixelLanes& pixel, Mask lit,
+                        PathLanes& path, BounceBatches& to) const {
+    const Float3 arrived = path.throughput;
+    if (enabled(shared::frame_direct)) {
+      const Material outer = lit_from_outside(m, boundary.leaving);
+      lights_.add_light({outer, s.position, arrived, pixel}, ray, lit, to.shadows);
+    }
+    const Mask goes_on = hn::And(lit, may_scatter(path));
     if (none(goes_on)) return;
-    lights_.add_sky(vertex, ray, goes_on, to.sky);
+    const Vertex<Material> vertex{m, s.position, arrived, pixel};
+    const Mask samples = hn::AndNot(boundary.leaving, goes_on);
+    lights_.add_sky(vertex, ray, samples, to.sky);
     if (job_.samples_emissive && enabled(shared::frame_emissive)) {
       const Float spread = path.cone_spread + number(0.5f);
-      lights_.add_emissive(vertex, ray, width, spread, goes_on, to.emissive);
+      lights_.add_emissive(vertex, ray, width, spread, samples, to.emissive);
     }
-    scatter(ray, m, width, pixel, goes_on, path, to.next);
+    ray.direction = scatter_.scatter(s, m, boundary, width, pixel, path);
+    if (job_.transmits) {
+      const Mask behind = hn::Lt(dot(ray.direction, s.geometric), zero());
+      ray.origin = select(behind, offset_origin(s.position, -s.geometric, zero()), ray.origin);
+    }
+    ray.t_max = number(1e30f);
+    go_on(ray, path, pixel, hn::And(goes_on, survives(pixel, path)), to.next);
   }
 
-  /// Along one of the two lobes, drawn in proportion to what it gives back.
-  HWY_INLINE void scatter(RayLanes ray, const Material& m, Float width, const PixelLanes& pixel,
-                          Mask lanes, PathLanes& path, RayBatch& next) const {
-    const Float probability = specular_probability(m), rest = one() - probability;
-    const Float2 u = numbers_.direction.at(pixel);
-    const Mask specular = hn::Lt(numbers_.lobe.at(pixel), probability);
-    const SpecularSample drawn = sample_specular(m, u);
-    const Float3 wide = sample_cosine(m.normal, u.x, u.y);
-    const Mask open = hn::Gt(dot(wide, m.geometric), zero());
-    const Float3 wide_share = keep(open, wide_weight(m, wide) * (one() / at_least(rest, 1e-30f)));
-    const Float3 specular_share = drawn.weight * (one() / at_least(probability, 1e-30f));
-    path.throughput = path.throughput * select(specular, specular_share, wide_share);
-    const Float by_chance =
-        hn::IfThenElseZero(is_scattering(drawn.roughness), probability * drawn.density);
-    const Float by_cosine = rest * cosine_density(at_least(dot(wide, m.normal), 0.0f));
-    path.density = select(specular, by_chance, by_cosine);
-    path.flags = hn::IfThenElseZero(integer_mask(specular),
-                                    integer(static_cast<int>(shared::path_specular)));
-    const Float roughness = select(specular, drawn.roughness, one());
-    path.cone_width = width;
-    path.cone_spread = hn::MulAdd(number(0.5f) * roughness, roughness, path.cone_spread);
-    path.bounces = path.bounces + one();
-    ray.direction = select(specular, drawn.direction, wide);
-    ray.t_max = number(1e30f);
-    go_on(ray, path, pixel, hn::And(lanes, survives(pixel, path)), next);
+  /// What lights from outside do at boundaries that they reach through the volume: nothing but its
+  /// diffuse lobe.
+  static HWY_INLINE Material lit_from_outside(Material m, Mask leaving) {
+    if constexpr (Surface::layered) {
+      if (none(leaving)) return m;
+      const Mask others = hn::Not(leaving);
+      for (Float3* const part :
+           {&m.f0, &m.f90_minus_f0, &m.specular_albedo, &m.sheen, &m.sheen_albedo}) {
+        *part = keep(others, *part);
+      }
+      m.coat_f0 = hn::IfThenElseZero(others, m.coat_f0);
+      m.coat_f90_minus_f0 = hn::IfThenElseZero(others, m.coat_f90_minus_f0);
+      m.coat_albedo = hn::IfThenElseZero(others, m.coat_albedo);
+    }
+    return m;
   }
 
   HWY_INLINE void go_on(const RayLanes& ray, const PathLanes& path, const PixelLanes& pixel,
@@ -228,6 +258,7 @@ class PathVertices {
   EnvironmentCells cells_;
   PathNumbers numbers_;
   PathLights<Surface> lights_;
+  PathScatter<Surface> scatter_;
 };
 
 template <class Surface>
@@ -266,8 +297,11 @@ void reference_begin(const gpu::HostPass<ReferenceBeginBindings>& job) {
 }
 
 void reference_bounce(const ReferenceBounceJob& job) {
-  for (const auto* const lights : {&job.shadows, &job.sky, &job.emissive}) {
-    *lights->count = {0, 0, 1, 1, job.blending, 0, 0, 0};
+  // Blended surfaces stop rays that could meet what they look for on a refracted way, too.
+  const std::uint32_t by_chance = job.transmits ? 0 : job.blending;
+  *job.shadows.count = {0, 0, 1, 1, job.blending, 0, 0, 0};
+  for (const auto* const lights : {&job.sky, &job.emissive}) {
+    *lights->count = {0, 0, 1, 1, by_chance, 0, 0, 0};
   }
   for_each_batch(static_cast<int>(job.rays.count->count), [&](int first, int last) {
     HWY_DYNAMIC_DISPATCH(bounce_batch)(job, first, last);

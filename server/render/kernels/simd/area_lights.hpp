@@ -17,12 +17,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
-template <class V>
-HWY_INLINE Triple<V> cross_of(const Triple<V>& a, const Triple<V>& b) {
-  return {hn::MulSub(a.y, b.z, a.z * b.y), hn::MulSub(a.z, b.x, a.x * b.z),
-          hn::MulSub(a.x, b.y, a.y * b.x)};
-}
-
 /// The angle of (x, y) for y >= 0, 0 to pi; 0 for (0, 0).
 template <class V>
 HWY_INLINE V upper_angle(V x, V y) {
@@ -191,8 +185,13 @@ HWY_INLINE Triple<V> area_contribution(D d, const shared::Light& light, const Sq
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Triple<V> area_contribution(D d, const shared::Light& light, const SquareTexels& ltc,
                                        const LayeredMaterial<V>& m, const Triple<V>& position) {
-  const Pair<V> shares =
+  Pair<V> shares =
       area_light_shares(d, light, ltc, m.normal, m.eye, m.n_dot_v, m.roughness, position);
+  if (m.grained) {
+    const Triple<V> bent = reflection_normal(m);
+    const V cosine = clamped(dot(bent, m.eye), 1e-3f, 1.0f);
+    shares.y = area_light_shares(d, light, ltc, bent, m.eye, cosine, m.roughness, position).y;
+  }
   Triple<V> energy = wide_albedo(m) * shares.x + under_coat_albedo(m) * shares.y;
   if (m.coated) {
     const V of_coat = area_light_shares(d, light, ltc, m.coat_normal, m.eye, m.coat_n_dot_v,

@@ -73,6 +73,11 @@ HWY_INLINE V length(const Triple<V>& a) {
   return hn::Sqrt(dot(a, a));
 }
 template <class V>
+HWY_INLINE Triple<V> cross_of(const Triple<V>& a, const Triple<V>& b) {
+  return {hn::MulSub(a.y, b.z, a.z * b.y), hn::MulSub(a.z, b.x, a.x * b.z),
+          hn::MulSub(a.x, b.y, a.y * b.x)};
+}
+template <class V>
 HWY_INLINE Triple<V> normalized(const Triple<V>& a) {
   return a * (hn::Set(hn::DFromV<V>(), 1.0f) / length(a));
 }

@@ -12,7 +12,7 @@
 #include <cstring>
 
 #include "render/kernels/common/tile.hpp"
-#include "render/kernels/simd/material/layers.hpp"
+#include "render/kernels/simd/material/packed_layer.hpp"
 #include "render/kernels/simd/ray_writer.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -52,7 +52,7 @@ HWY_INLINE auto gbuffer_material(const Job& job, const PixelLanes& pixels, const
   const Float3 geometric = octahedral_decode(encoded.z, encoded.w);
   if constexpr (layered) {
     Float roughness;
-    const auto layer = unpack_layer(tag, gathered4(job.layers, pixels), roughness);
+    const auto layer = unpack_layer(tag, gathered4(job.layers, pixels), normal, roughness);
     return make_material(tag, color, packed.y, roughness, normal, geometric, eye, tables, layer);
   } else {
     return make_material(tag, color, packed.y, packed.x, normal, geometric, eye, tables.split_sum);

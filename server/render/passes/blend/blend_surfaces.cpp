@@ -1,6 +1,7 @@
 #include "render/passes/blend/blend_surfaces.hpp"
 
 #include "render/kernels/blend/blended.hpp"
+#include "render/passes/compose/skybox.hpp"
 #include "render/passes/formats.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/reflections/trace_specular.hpp"
@@ -8,6 +9,7 @@
 #include "render/resources/lights/light_table.hpp"
 #include "render/resources/moving/moving_scene.hpp"
 #include "shaders/embedded.hpp"
+#include "shaders/shared/transmission.h"
 
 namespace heliograph::render {
 namespace {
@@ -104,6 +106,9 @@ class BlendedSurfaces {
     for (const auto* stream : {&shadows, &ambient, &reflected}) {
       begin_rays(plan_, in_, "blended.light", *stream);
     }
+    // Before the weights of the choice are written over.
+    std::optional<ThroughRays> through;
+    if (bends_light(in_)) through = enter();
     const bool traced = in_.settings.specular.enabled;
     pass("blended.light", shaders::blended_light)
         .bind<kernels::BlendedLightBindings>({.lit = ray_source(lit_),
@@ -132,6 +137,7 @@ class BlendedSurfaces {
     } else {
       add_unoccluded_light(plan_, in_, "blended.ambient", ambient, to_.radiance);
     }
+    if (through) look_through(*through);
     if (traced) {
       trace_reflections(plan_, in_, "blended.specular", reflected, gbuffer_, to_.surface,
                         to_.transmittance, to_.specular);
@@ -149,6 +155,73 @@ class BlendedSurfaces {
   }
 
  private:
+  /// Rays on their way through volumes, and those that have nothing more to pass.
+  struct ThroughRays {
+    tracing::RayStream inside, refracted;
+  };
+
+  ThroughRays enter() {
+    const ThroughRays through{
+        declare_rays(plan_, "blended.inside", pixels_, tracing::RayKind::reflection),
+        declare_rays(plan_, "blended.refracted", pixels_, tracing::RayKind::reflection)};
+    begin_rays(plan_, in_, "blended.inside", through.inside, Blending::stops);
+    begin_rays(plan_, in_, "blended.refracted", through.refracted);
+    pass("blended.enter", shaders::blended_enter)
+        .bind<kernels::BlendedEnterBindings>({.lit = ray_source(lit_),
+                                              .chosen = to_.chosen,
+                                              .radiance = to_.radiance,
+                                              .transmittance = to_.transmittance,
+                                              .inside = ray_sink(through.inside),
+                                              .refracted = ray_sink(through.refracted)})
+        .dispatch_indirect(lit_.count, ray_groups_offset)
+        .host([in = in_](const kernels::BlendedEnterJob::Pass& blended) {
+          const auto lights = frame_lights(in.tables.lights, in.constants);
+          kernels::blended_enter({blended, in.constants, lit_scene(in, lights)});
+        });
+    return through;
+  }
+
+  /// The light that comes through the surfaces.
+  void look_through(const ThroughRays& through) {
+    tracing::RayStream current = through.inside;
+    tracing::RayStream next =
+        declare_rays(plan_, "blended.inside.next", pixels_, tracing::RayKind::reflection);
+    const gpu::BufferRef hits = plan_.buffer("blended.inside.hits", sizeof(shared::Hit) * pixels_,
+                                             storage, gpu::Memory::device);
+    for (std::uint32_t round = 0; round < shared::most_boundaries; ++round) {
+      in_.tracer.trace_closest(plan_, "blended.inside.trace", in_.structure, current, hits);
+      begin_rays(plan_, in_, "blended.inside", next, Blending::stops);
+      cross_boundaries(round, current, hits, next, through.refracted);
+      std::swap(current, next);
+    }
+    trace_reflections(plan_, in_, "blended.refracted", through.refracted, gbuffer_, to_.surface,
+                      to_.transmittance, to_.specular, cache_);
+    plan_.pass("blended.through", in_.program(shaders::blended_through))
+        .bind<kernels::BlendedThroughBindings>({.rays = ray_source(through.refracted),
+                                                .radiance = to_.radiance,
+                                                .specular = to_.specular})
+        .dispatch_indirect(through.refracted.count, ray_groups_offset)
+        .host([in = in_, seen = SeenBackground(in_)](const kernels::BlendedThroughJob::Pass& pass) {
+          kernels::blended_through({pass, in.constants, seen.map()});
+        });
+  }
+
+  void cross_boundaries(std::uint32_t round, const tracing::RayStream& inside, gpu::BufferRef hits,
+                        const tracing::RayStream& next, const tracing::RayStream& refracted) {
+    pass("blended.refract", shaders::blended_refract)
+        .bind<kernels::BlendedRefractBindings>({.inside = ray_source(inside),
+                                                .hits = hits,
+                                                .chosen = to_.chosen,
+                                                .next = ray_sink(next),
+                                                .refracted = ray_sink(refracted)})
+        .constants(kernels::BlendedRefractConstants{round, round + 1 == shared::most_boundaries})
+        .dispatch_indirect(inside.count, ray_groups_offset)
+        .host([in = in_](const kernels::BlendedRefractJob::Pass& pass) {
+          const auto lights = frame_lights(in.tables.lights, in.constants);
+          kernels::blended_refract({pass, in.constants, lit_scene(in, lights)});
+        });
+  }
+
   gpu::PassBuilder pass(const std::string& name, const gpu::ShaderBinary& shader) {
     return plan_.pass(name, in_.program(shader, in_.moving.features_without_emission()));
   }
@@ -218,6 +291,11 @@ BlendedImages declare_blended(gpu::FramePlan& plan) {
       plan.image(buffers.specular.name, four_floats),
       plan.image(buffers.surface.name, VK_FORMAT_R8G8B8A8_UNORM),
       plan.buffer("blended.chosen", sizeof(shared::Hit) * pixels, storage, gpu::Memory::device)};
+}
+
+bool bends_light(const FrameInputs& in) {
+  return in.settings.transmission.refraction &&
+         (in.moving.features_without_emission() & shared::scene_transmits) != 0;
 }
 
 kernels::LitScene lit_scene(const FrameInputs& in, std::span<const shared::Light> lights) {

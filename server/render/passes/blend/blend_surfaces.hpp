@@ -41,6 +41,9 @@ inline bool has_blends(const FrameInputs& in) {
   return (in.moving.features_without_emission() & shared::scene_blends) != 0;
 }
 
+/// Whether surfaces may show what is behind them along rays of their own.
+bool bends_light(const FrameInputs& in);
+
 /// What host kernels light surfaces with. `lights`, of this frame, outlive it.
 kernels::LitScene lit_scene(const FrameInputs& in, std::span<const shared::Light> lights);
 
@@ -48,7 +51,8 @@ kernels::LitScene lit_scene(const FrameInputs& in, std::span<const shared::Light
 /// and what lets light through. They are found from front to back between the camera and the
 /// G-buffer's surfaces, by rays through the pixels or by the host's rasteriser (draw_gbuffer), so
 /// that no order of drawing matters. They are lit as others are, by one ray of each kind in every
-/// pixel, without a denoiser; rough ones reflect fewer in frames that leave samples out.
+/// pixel, without a denoiser; rough ones reflect fewer in frames that leave samples out. What is
+/// behind volumes and rough thin walls that let light through shows along one refracted ray.
 /// @param cache where indirect light comes from; without one it is the environment's, as far as
 /// ambient occlusion lets it through
 /// @param drawn what draw_gbuffer has filled; otherwise rays find the surfaces

@@ -42,6 +42,7 @@ class PathRounds {
         caps_(caps),
         rows_(rows),
         shines_((in.moving.features() & shared::scene_emissive) != 0),
+        transmits_((in.moving.features() & shared::scene_transmits) != 0),
         capacity_(camera_ray_capacity(plan.extent().width, rows)),
         radiance_(radiance),
         shadows_(declare_rays(plan, "reference.shadows", capacity_, RayKind::shadow)),
@@ -99,12 +100,12 @@ class PathRounds {
                                                  .radiance = radiance_,
                                                  .ground_shade = ground_})
         .constants(shared::ReferenceConstants{round, bounces, 1, 1.0f})
-        .host([in = in_, shines = shines_, seen = background_,
+        .host([in = in_, shines = shines_, transmits = transmits_, seen = background_,
                rows = rows_](const kernels::ReferenceBounceJob::Pass& pass) {
           const auto lights = frame_lights(in.tables.lights, in.constants);
           kernels::reference_bounce({pass, in.constants, lit_scene(in, lights),
-                                     environment_cells(in), seen.map(), shines, frame_blending(in),
-                                     rows});
+                                     environment_cells(in), seen.map(), shines, transmits,
+                                     frame_blending(in), rows});
         });
   }
 
@@ -125,7 +126,7 @@ class PathRounds {
   gpu::BufferRef ground_;
   const SectionCaps& caps_;
   kernels::Rows rows_;
-  bool shines_;
+  bool shines_, transmits_;
   std::uint32_t capacity_;
   gpu::ImageRef radiance_;
   tracing::RayStream shadows_, sky_, emissive_;

@@ -192,12 +192,13 @@ gpu::ImageRef trace_specular(gpu::FramePlan& plan, const FrameInputs& in, const 
 
 void trace_reflections(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
                        const tracing::RayStream& rays, const GBuffer& behind, gpu::ImageRef surface,
-                       gpu::ImageRef distance, gpu::ImageRef radiance) {
+                       gpu::ImageRef distance, gpu::ImageRef radiance,
+                       const std::optional<RadianceCache>& cache) {
   GBuffer reflecting = behind;
   reflecting.surface = surface;
   reflecting.motion = distance;
   trace_and_shade(plan, in, name, rays, reflecting, {radiance, {}, gpu::each_pixel(), 1},
-                  shown_before(plan, name, {}), {});
+                  shown_before(plan, name, {}), cache);
 }
 
 void add_unoccluded_light(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,

@@ -42,10 +42,11 @@ gpu::ImageRef trace_specular(gpu::FramePlan& plan, const FrameInputs& in, const 
 
 /// Radiance along `rays` of surfaces before those of the G-buffer `behind`, each with its weight:
 /// stored in `radiance` at the rays' pixels. `surface` holds the roughness that they come from,
-/// `distance` how far from the eye that is (a; metres).
+/// `distance` how far from the eye that is (a; metres). `cache`: as above.
 void trace_reflections(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,
                        const tracing::RayStream& rays, const GBuffer& behind, gpu::ImageRef surface,
-                       gpu::ImageRef distance, gpu::ImageRef radiance);
+                       gpu::ImageRef distance, gpu::ImageRef radiance,
+                       const std::optional<RadianceCache>& cache = {});
 
 /// Adds what `rays` carry to `radiance`, at the pixels of those that are not occluded.
 void add_unoccluded_light(gpu::FramePlan& plan, const FrameInputs& in, const std::string& name,

@@ -149,7 +149,7 @@ std::vector<std::uint32_t> trace_back(const Mesh& mesh, std::span<const std::uin
 
 BuiltMesh build_mesh(const Primitive& primitive, std::span<const Accessor> accessors,
                      std::uint32_t material, std::span<const shared::Material> materials,
-                     const std::stop_token& stop) {
+                     std::span<const MaterialLayers> layers, const std::stop_token& stop) {
   BuiltMesh built;
   Mesh& mesh = built.mesh;
   mesh.name = primitive.name;
@@ -169,10 +169,12 @@ BuiltMesh build_mesh(const Primitive& primitive, std::span<const Accessor> acces
   // Tangents without normals are ignored (glTF 3.7.2.1).
   const bool has_tangents = primitive.tangent && primitive.normal;
   const shared::TextureSlot& normal_map = materials[material].normal_texture;
-  if (has_tangents || normal_map.texture == shared::no_texture) {
+  const bool bumpy = normal_map.texture != shared::no_texture;
+  if (has_tangents || !(bumpy || layers[material].anisotropy > 0.0f)) {
     orthonormalize_tangents(mesh.vertices);
   } else {
-    generate_tangents(mesh.vertices, mesh.indices, normal_map, stop);
+    const shared::TextureSlot& map = bumpy ? normal_map : layers[material].anisotropy_texture;
+    generate_tangents(mesh.vertices, mesh.indices, map, stop);
   }
   for (const std::uint32_t index : mesh.indices) mesh.bounds.include(mesh.vertices[index].position);
   if (primitive.deforms()) built.sources = trace_back(mesh, corners);

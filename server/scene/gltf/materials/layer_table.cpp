@@ -39,10 +39,16 @@ glm::vec3 mean_texel(const Scene& scene, const shared::TextureSlot& slot) {
   return sum / static_cast<float>(count);
 }
 
-glm::vec3 absorption(const MaterialLayers& from) {
+/// Exponents per metre (KHR_materials_volume). Thin walls attenuate nothing.
+glm::vec3 attenuation(const MaterialLayers& from) {
   if (from.thickness <= 0.0f || from.attenuation_distance <= 0.0f) return glm::vec3(0.0f);
   const glm::vec3 color = glm::max(from.attenuation_color, glm::vec3(1e-6f));
-  return -glm::log(color) * (from.thickness / from.attenuation_distance);
+  return -glm::log(color) / from.attenuation_distance;
+}
+
+/// After the whole thickness.
+glm::vec3 absorption(const MaterialLayers& from) {
+  return attenuation(from) * from.thickness;
 }
 
 /// Transmitted fraction of light, averaged over colors and texels.
@@ -73,10 +79,13 @@ shared::MaterialLayer plain_layer() {
   layer.specular = 1.0f;
   layer.dielectric = 0.04f;
   layer.coat_normal_scale = 1.0f;
+  layer.film_ior = 1.0f;
+  layer.grain_x = 1.0f;
   for (shared::TextureSlot* slot :
        {&layer.specular_texture, &layer.specular_color_texture, &layer.coat_texture,
         &layer.coat_roughness_texture, &layer.coat_normal_texture, &layer.sheen_color_texture,
-        &layer.sheen_roughness_texture, &layer.transmission_texture, &layer.thickness_texture}) {
+        &layer.sheen_roughness_texture, &layer.transmission_texture, &layer.thickness_texture,
+        &layer.iridescence_texture, &layer.film_texture, &layer.anisotropy_texture}) {
     *slot = no_texture_slot();
   }
   return layer;
@@ -113,6 +122,25 @@ shared::MaterialLayer layer_of(const shared::Material& material, const MaterialL
     layer.absorption = absorption(from);
     layer.transmission_texture = from.transmission_texture;
     layer.thickness_texture = from.thickness_texture;
+    layer.attenuation = attenuation(from);
+    // An ior of 0 lets nothing in.
+    if (from.thickness > 0.0f) layer.refraction = std::max(material.ior, 1.0f);
+    layer.dispersion = from.dispersion;
+  }
+  if (from.iridescence > 0.0f) {
+    layer.iridescence = from.iridescence;
+    layer.film_ior = from.iridescence_ior;
+    // Without a texture the film is as thick as the maximum everywhere: its texel is 1.
+    layer.film_least = from.iridescence_thickness_minimum;
+    layer.film_thickness = from.iridescence_thickness_maximum;
+    layer.iridescence_texture = from.iridescence_texture;
+    layer.film_texture = from.iridescence_thickness_texture;
+  }
+  if (from.anisotropy > 0.0f) {
+    layer.anisotropy = from.anisotropy;
+    layer.grain_x = std::cos(from.anisotropy_rotation);
+    layer.grain_y = std::sin(from.anisotropy_rotation);
+    layer.anisotropy_texture = from.anisotropy_texture;
   }
   return layer;
 }

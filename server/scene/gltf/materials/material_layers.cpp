@@ -18,6 +18,9 @@ class LayerReader {
     read_sheen(layers);
     read_transmission(layers);
     read_volume(layers);
+    read_dispersion(layers);
+    read_iridescence(layers);
+    read_anisotropy(layers);
     return layers;
   }
 
@@ -54,15 +57,14 @@ class LayerReader {
   }
 
   void read_transmission(MaterialLayers& layers) {
-    const auto json =
-        open("KHR_materials_transmission", "transmitted light is neither refracted nor blurred");
+    const auto json = find("KHR_materials_transmission");
     if (!json) return;
     layers.transmission = json->number("transmissionFactor", 0.0f);
     layers.transmission_texture = texture(*json, "transmissionTexture");
   }
 
   void read_volume(MaterialLayers& layers) {
-    const auto json = open("KHR_materials_volume", "thin walled, without refraction");
+    const auto json = find("KHR_materials_volume");
     if (!json) return;
     layers.thickness = json->number("thicknessFactor", 0.0f);
     layers.attenuation_distance = json->number("attenuationDistance", 0.0f);
@@ -70,12 +72,28 @@ class LayerReader {
     layers.thickness_texture = texture(*json, "thicknessTexture");
   }
 
-  std::optional<ExtensionValue> open(const std::string& name, std::string_view effect) {
-    auto found = find(name);
-    if (found) {
-      warnings_.add("extension \"" + name + "\" is approximated: " + std::string(effect));
-    }
-    return found;
+  void read_dispersion(MaterialLayers& layers) {
+    const auto json = find("KHR_materials_dispersion");
+    if (json) layers.dispersion = json->number("dispersion", 0.0f);
+  }
+
+  void read_iridescence(MaterialLayers& layers) {
+    const auto json = find("KHR_materials_iridescence");
+    if (!json) return;
+    layers.iridescence = json->number("iridescenceFactor", 0.0f);
+    layers.iridescence_ior = json->number("iridescenceIor", 1.3f);
+    layers.iridescence_thickness_minimum = json->number("iridescenceThicknessMinimum", 100.0f);
+    layers.iridescence_thickness_maximum = json->number("iridescenceThicknessMaximum", 400.0f);
+    layers.iridescence_texture = texture(*json, "iridescenceTexture");
+    layers.iridescence_thickness_texture = texture(*json, "iridescenceThicknessTexture");
+  }
+
+  void read_anisotropy(MaterialLayers& layers) {
+    const auto json = find("KHR_materials_anisotropy");
+    if (!json) return;
+    layers.anisotropy = json->number("anisotropyStrength", 0.0f);
+    layers.anisotropy_rotation = json->number("anisotropyRotation", 0.0f);
+    layers.anisotropy_texture = texture(*json, "anisotropyTexture");
   }
 
   std::optional<ExtensionValue> find(const std::string& name) const {

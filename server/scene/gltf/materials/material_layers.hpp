@@ -10,9 +10,8 @@
 
 namespace heliograph::scene {
 
-/// Reads a material's extensions: specular, clearcoat, sheen, transmission and volume. Registers
-/// their textures in `textures` and adds a warning for every approximation. `path` names the
-/// material.
+/// Reads the extensions that add layers to a material. Registers their textures in `textures`,
+/// which may add warnings. `path` names the material.
 MaterialLayers read_material_layers(const tinygltf::ExtensionMap& extensions,
                                     const std::string& path, TextureTable& textures,
                                     Warnings& warnings);

@@ -159,7 +159,10 @@ void drop_missing_images(Scene& scene, const std::vector<std::string>& problems,
     if (!problems[scene.textures[slot.texture].image].empty()) slot = no_texture_slot();
   };
   for (shared::Material& material : scene.materials) drop(material.normal_texture);
-  for (MaterialLayers& layers : scene.material_layers) drop(layers.clearcoat_normal_texture);
+  for (MaterialLayers& layers : scene.material_layers) {
+    drop(layers.clearcoat_normal_texture);
+    drop(layers.anisotropy_texture);
+  }
 }
 
 void build_alpha_heap(Scene& scene) {

@@ -24,8 +24,8 @@ shared::Material default_material();
 MaterialTable read_materials(const tinygltf::Model& model, TextureTable& textures,
                              Warnings& warnings);
 
-/// Removes normal maps that were not decoded: `problems` of the scene's images. The others are
-/// white, which leaves the factors as they are. Adds a warning for each problem.
+/// Removes textures of directions that were not decoded: `problems` of the scene's images. The
+/// others are white, which leaves the factors as they are. Adds a warning for each problem.
 void drop_missing_images(Scene& scene, const std::vector<std::string>& problems,
                          Warnings& warnings);
 

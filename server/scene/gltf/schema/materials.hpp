@@ -76,6 +76,13 @@ inline constexpr Member specular_glossiness_members[] = {
 };
 inline constexpr ObjectType specular_glossiness = {specular_glossiness_members};
 
+inline constexpr Member anisotropy_members[] = {
+    number("anisotropyStrength").range(0, 1),
+    number("anisotropyRotation"),
+    object("anisotropyTexture", slot),
+};
+inline constexpr ObjectType anisotropy = {anisotropy_members};
+
 inline constexpr Member clearcoat_members[] = {
     number("clearcoatFactor").range(0, 1),          object("clearcoatTexture", slot),
     number("clearcoatRoughnessFactor").range(0, 1), object("clearcoatRoughnessTexture", slot),
@@ -83,11 +90,24 @@ inline constexpr Member clearcoat_members[] = {
 };
 inline constexpr ObjectType clearcoat = {clearcoat_members};
 
+inline constexpr Member dispersion_members[] = {number("dispersion").at_least(0)};
+inline constexpr ObjectType dispersion = {dispersion_members};
+
 inline constexpr Member emissive_strength_members[] = {number("emissiveStrength").at_least(0)};
 inline constexpr ObjectType emissive_strength = {emissive_strength_members};
 
 inline constexpr Member ior_members[] = {number("ior").at_least(0)};
 inline constexpr ObjectType ior = {ior_members};
+
+inline constexpr Member iridescence_members[] = {
+    number("iridescenceFactor").range(0, 1),
+    object("iridescenceTexture", slot),
+    number("iridescenceIor").at_least(1),
+    number("iridescenceThicknessMinimum").at_least(0),
+    number("iridescenceThicknessMaximum").at_least(0),
+    object("iridescenceThicknessTexture", slot),
+};
+inline constexpr ObjectType iridescence = {iridescence_members};
 
 inline constexpr Member sheen_members[] = {
     numbers("sheenColorFactor", 3).range(0, 1),
@@ -122,9 +142,12 @@ inline constexpr ObjectType volume = {volume_members};
 inline constexpr ObjectType unlit = {};
 
 inline constexpr Extension material_extensions[] = {
+    {"KHR_materials_anisotropy", &anisotropy},
     {"KHR_materials_clearcoat", &clearcoat},
+    {"KHR_materials_dispersion", &dispersion},
     {"KHR_materials_emissive_strength", &emissive_strength},
     {"KHR_materials_ior", &ior},
+    {"KHR_materials_iridescence", &iridescence},
     {"KHR_materials_pbrSpecularGlossiness", &specular_glossiness},
     {"KHR_materials_sheen", &sheen},
     {"KHR_materials_specular", &specular},

@@ -110,10 +110,10 @@ TEST(Materials, OutOfRangeFactorsAreClampedWithWarning) {
 
 TEST(Materials, WarningNamesUnsupportedExtension) {
   GltfBuilder builder = triangle();
-  builder.json["extensionsUsed"] = {"KHR_materials_iridescence"};
+  builder.json["extensionsUsed"] = {"KHR_materials_diffuse_transmission"};
   const Scene scene = builder.import();
   ASSERT_EQ(scene.warnings.size(), 1u);
-  EXPECT_NE(scene.warnings[0].find("KHR_materials_iridescence"), std::string::npos);
+  EXPECT_NE(scene.warnings[0].find("KHR_materials_diffuse_transmission"), std::string::npos);
 }
 
 TEST(Materials, LayersAreReadAndApproximationIsWarned) {
@@ -142,10 +142,12 @@ TEST(Materials, LayersAreReadAndApproximationIsWarned) {
   EXPECT_EQ(layers.thickness, 0.5f);
   EXPECT_EQ(layers.attenuation_distance, 2.0f);
   EXPECT_EQ(layers.attenuation_color, glm::vec3(1.0f, 0.5f, 0.25f));
-  EXPECT_EQ(scene.warnings.size(), 2u) << "transmission and volume";
-  for (const std::string& warning : scene.warnings) {
-    EXPECT_NE(warning.find("is approximated"), std::string::npos) << warning;
-  }
+  EXPECT_TRUE(scene.warnings.empty());
+  // What attenuates light along its way, and over the thickness that the material states.
+  const shared::MaterialLayer& layer = scene.layers.at(scene.materials.at(0).layer);
+  EXPECT_NEAR(layer.attenuation.y, 0.5f * std::log(2.0f), 1e-6f);
+  EXPECT_NEAR(layer.absorption.y, 0.25f * std::log(2.0f), 1e-6f);
+  EXPECT_EQ(layer.refraction, 1.5f);
 }
 
 TEST(Materials, OutOfRangeLayersAreRejected) {
@@ -165,6 +167,19 @@ TEST(Materials, OutOfRangeLayersAreRejected) {
   expect(refusal_with("KHR_materials_volume", {{"attenuationDistance", 0}}), "more than 0");
   expect(refusal_with("KHR_materials_volume", {{"thicknessFactor", -3}}), "negative");
   expect(refusal_with("KHR_materials_volume", 5), "must be an object");
+  expect(refusal_with("KHR_materials_iridescence", {{"iridescenceFactor", 1.5}}), "from 0 to 1");
+  expect(refusal_with("KHR_materials_iridescence", {{"iridescenceIor", 0.5}}), "iridescenceIor");
+  expect(refusal_with("KHR_materials_iridescence", {{"iridescenceThicknessMinimum", -1}}),
+         "negative");
+  expect(refusal_with("KHR_materials_iridescence", {{"iridescenceThicknessMaximum", "thick"}}),
+         "number");
+  expect(refusal_with("KHR_materials_iridescence", {{"iridescenceTexture", {{"index", 9}}}}),
+         "iridescenceTexture.index: 9");
+  expect(refusal_with("KHR_materials_anisotropy", {{"anisotropyStrength", -0.5}}), "negative");
+  expect(refusal_with("KHR_materials_anisotropy", {{"anisotropyRotation", "x"}}), "number");
+  expect(refusal_with("KHR_materials_anisotropy", {{"anisotropyTexture", {{"index", 9}}}}),
+         "anisotropyTexture.index: 9");
+  expect(refusal_with("KHR_materials_dispersion", {{"dispersion", -1}}), "negative");
 }
 
 /// The shading layer of the only material.
@@ -229,7 +244,13 @@ TEST(Layers, TexturesHaveColorSpaceOfTheirExtension) {
                          {"sheenRoughnessTexture", slot(1)}}},
                        {"KHR_materials_transmission",
                         {{"transmissionFactor", 1}, {"transmissionTexture", slot(1)}}},
-                       {"KHR_materials_volume", {{"thicknessTexture", slot(0)}}}}}});
+                       {"KHR_materials_volume", {{"thicknessTexture", slot(0)}}},
+                       {"KHR_materials_iridescence",
+                        {{"iridescenceFactor", 1},
+                         {"iridescenceTexture", slot(1)},
+                         {"iridescenceThicknessTexture", slot(0)}}},
+                       {"KHR_materials_anisotropy",
+                        {{"anisotropyStrength", 1}, {"anisotropyTexture", slot(1)}}}}}});
   const Scene scene = builder.import();
   const shared::MaterialLayer layer = shading_layer(scene);
   const auto expect = [&](const shared::TextureSlot& drawn, bool srgb, std::uint32_t set) {
@@ -246,6 +267,9 @@ TEST(Layers, TexturesHaveColorSpaceOfTheirExtension) {
   expect(layer.sheen_roughness_texture, false, 1);
   expect(layer.transmission_texture, false, 1);
   expect(layer.thickness_texture, false, 0);
+  expect(layer.iridescence_texture, false, 1);
+  expect(layer.film_texture, false, 0);
+  expect(layer.anisotropy_texture, false, 1);
   EXPECT_EQ(layer.coat_normal_scale, 0.5f);
 }
 

@@ -53,6 +53,15 @@ void add_materials(GltfBuilder& b) {
            {"KHR_materials_clearcoat",
             {{"clearcoatFactor", 1}, {"clearcoatTexture", {{"index", 0}}}}},
            {"KHR_materials_sheen", {{"sheenColorFactor", {1, 1, 1}}}},
+           {"KHR_materials_iridescence",
+            {{"iridescenceFactor", 0.5},
+             {"iridescenceIor", 1.6},
+             {"iridescenceTexture", {{"index", 1}}}}},
+           {"KHR_materials_anisotropy",
+            {{"anisotropyStrength", 0.5},
+             {"anisotropyRotation", 1},
+             {"anisotropyTexture", {{"index", 1}}}}},
+           {"KHR_materials_dispersion", {{"dispersion", 0.5}}},
            {"KHR_materials_transmission", {{"transmissionFactor", 0.5}}},
            {"KHR_materials_volume", {{"thicknessFactor", 1}, {"attenuationDistance", 1}}}}}});
   b.add("materials", {{"extensions", {{"KHR_materials_unlit", json::object()}}}});
@@ -203,11 +212,12 @@ GltfBuilder rich_document() {
   GltfBuilder b;
   b.json["asset"]["minVersion"] = "2.0";
   b.json["extensionsUsed"] = {
-      "KHR_lights_punctual",        "KHR_texture_transform",   "EXT_texture_webp",
-      "KHR_draco_mesh_compression", "EXT_meshopt_compression", "EXT_mesh_gpu_instancing",
-      "KHR_materials_variants",     "KHR_materials_ior",       "KHR_materials_specular",
-      "KHR_materials_clearcoat",    "KHR_materials_sheen",     "KHR_materials_transmission",
-      "KHR_materials_volume",       "KHR_materials_unlit",     "KHR_materials_emissive_strength"};
+      "KHR_lights_punctual",        "KHR_texture_transform",    "EXT_texture_webp",
+      "KHR_draco_mesh_compression", "EXT_meshopt_compression",  "EXT_mesh_gpu_instancing",
+      "KHR_materials_variants",     "KHR_materials_ior",        "KHR_materials_specular",
+      "KHR_materials_clearcoat",    "KHR_materials_sheen",      "KHR_materials_transmission",
+      "KHR_materials_volume",       "KHR_materials_unlit",      "KHR_materials_emissive_strength",
+      "KHR_materials_iridescence",  "KHR_materials_anisotropy", "KHR_materials_dispersion"};
   b.json["extensionsRequired"] = {"KHR_draco_mesh_compression", "EXT_meshopt_compression"};
   add_textures(b);
   add_materials(b);

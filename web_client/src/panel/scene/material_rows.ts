@@ -17,9 +17,16 @@ type NumberMember =
   | "clearcoat_roughness"
   | "clearcoat_normal_scale"
   | "sheen_roughness"
+  | "iridescence"
+  | "iridescence_ior"
+  | "iridescence_thickness_minimum"
+  | "iridescence_thickness_maximum"
+  | "anisotropy"
+  | "anisotropy_rotation"
   | "transmission"
   | "thickness"
-  | "attenuation_distance";
+  | "attenuation_distance"
+  | "dispersion";
 type ColourMember = "specular_color" | "sheen_color" | "attenuation_color";
 
 type SliderParts = Parameters<typeof createSliderRow>[0];
@@ -71,6 +78,26 @@ export const factors: readonly (SliderFactor | ColourFactor)[] = [
   }),
   { member: "sheen_color", label: "Sheen colour" },
   slider("sheen_roughness", "Sheen roughness", "From silk (0) to velvet and dust (1)."),
+  slider("iridescence", "Iridescence", "Fraction under a thin film, as on soap bubbles and oil."),
+  slider("iridescence_ior", "Film index of refraction", "Water has 1.33, oil 1.5.", {
+    minimum: 1,
+    maximum: 3,
+  }),
+  slider("iridescence_thickness_minimum", "Least film thickness", "Where its texture is black.", {
+    unit: "nanometres",
+    maximum: 2000,
+    needs: "iridescence_thickness",
+  }),
+  slider("iridescence_thickness_maximum", "Film thickness", "It makes the colours.", {
+    unit: "nanometres",
+    maximum: 2000,
+  }),
+  slider("anisotropy", "Anisotropy", "How much rougher it is in one direction, as brushed metal."),
+  slider("anisotropy_rotation", "Anisotropy rotation", "Of the direction in which it is rougher.", {
+    unit: "radians",
+    minimum: -3.15,
+    maximum: 3.15,
+  }),
   slider("transmission", "Transmission", "Fraction of light that passes. Shadows keep the file's."),
   slider("thickness", "Thickness", "How much there is to pass below the surface; 0: a thin wall.", {
     unit: "metres",
@@ -84,6 +111,9 @@ export const factors: readonly (SliderFactor | ColourFactor)[] = [
     { unit: "metres", maximum: 10, scale: "cubic" },
   ),
   { member: "attenuation_color", label: "Attenuation colour" },
+  slider("dispersion", "Dispersion", "How far the colours are bent apart; diamond has 0.36.", {
+    maximum: 2,
+  }),
 ];
 
 interface Emission {

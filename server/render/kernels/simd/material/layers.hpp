@@ -1,5 +1,5 @@
-// Surfaces under clear coat and sheen, and with specular parameters of their own, for host kernels:
-// shaders/lib/scene/layers.glsl and what brdf.glsl and environment.glsl make of them, in vectors.
+// Surfaces under clear coat and sheen, with grain and specular parameters of their own, for host
+// kernels: what shaders/lib/lighting/brdf.glsl and environment.glsl make of layers, in vectors.
 // Kernels of scenes without layers use material.hpp alone. Included once per instruction set; the
 // guard is Google Highway's convention.
 #if defined(HELIOGRAPH_KERNELS_LAYERS_HPP) == defined(HWY_TARGET_TOGGLE)
@@ -26,6 +26,8 @@ struct SurfaceLayer {
   V sheen_roughness;
   V transmission;
   Triple<V> transmitted;
+  Triple<V> grain;  // direction in which the surface is rougher, unit length
+  V anisotropy;     // strength; 0: the surface has no grain
 };
 
 template <class V>
@@ -39,8 +41,26 @@ struct LayeredMaterial : SurfaceMaterial<V> {
   Triple<V> sheen;  // factor on the lobe; 0: there is none
   V sheen_roughness;
   Triple<V> sheen_albedo;
-  bool coated, fuzzy;  // whether any lane has a coat, or sheen
+  Triple<V> grain;              // perpendicular to the normal, unit length
+  V anisotropy;                 // 0: there is no grain
+  bool coated, fuzzy, grained;  // whether any lane has a coat, sheen, or grain
 };
+
+/// Alpha of the base's specular lobe along the grain and across it (KHR_materials_anisotropy).
+template <class V>
+HWY_INLINE Pair<V> lobe_alpha(V roughness, V anisotropy) {
+  const V alpha = roughness * roughness;
+  return {mix(alpha, hn::Set(hn::DFromV<V>(), 1.0f), anisotropy * anisotropy), alpha};
+}
+
+/// `grain` turned into the plane of `normal`.
+template <class V>
+HWY_INLINE Triple<V> grain_about(const Triple<V>& normal, const Triple<V>& grain) {
+  const hn::DFromV<V> d;
+  const Triple<V> along = grain - normal * dot(normal, grain);
+  const V squared = hn::Max(dot(along, along), hn::Set(d, 1e-12f));
+  return along * (hn::Set(d, 1.0f) / hn::Sqrt(squared));
+}
 
 /// Dims all that lies under another lobe.
 template <class V>
@@ -133,7 +153,9 @@ HWY_INLINE LayeredMaterial<V> make_base(D d, const Triple<V>& base_color, V meta
   m.coat_n_dot_v = m.n_dot_v;
   m.coat_roughness = m.coat_f0 = m.coat_f90_minus_f0 = m.coat_albedo = m.sheen_roughness = zero;
   m.sheen = m.sheen_albedo = {zero, zero, zero};
-  m.coated = m.fuzzy = false;
+  m.grain = layer.grain;
+  m.anisotropy = layer.anisotropy;
+  m.coated = m.fuzzy = m.grained = false;
   return m;
 }
 
@@ -145,8 +167,19 @@ HWY_INLINE LayeredMaterial<V> make_material(D d, const Triple<V>& base_color, V 
                                             const LobeLanes<D>& tables,
                                             const SurfaceLayer<V>& layer) {
   const V zero = hn::Zero(d), n_dot_v = clamped(dot(normal, eye), 1e-3f, 1.0f);
+  const auto grained = hn::Gt(layer.anisotropy, zero);
+  const bool any_grain = !hn::AllFalse(d, grained);
+  V round = roughness;  // of the lobe without grain that stands for one with it in the table
+  if (any_grain) {
+    const Pair<V> alpha = lobe_alpha(roughness, layer.anisotropy);
+    round = hn::IfThenElse(grained, hn::Sqrt(hn::Sqrt(alpha.x * alpha.y)), roughness);
+  }
   LayeredMaterial<V> m = make_base(d, base_color, metallic, roughness, normal, geometric, eye,
-                                   tables.split_sum.at(n_dot_v, roughness), layer);
+                                   tables.split_sum.at(n_dot_v, round), layer);
+  if (any_grain) {
+    m.grained = true;
+    m.grain = grain_about(normal, layer.grain);
+  }
   const auto fuzzy = hn::Gt(largest_of(layer.sheen), zero);
   if (!hn::AllFalse(d, fuzzy)) {
     m.fuzzy = true;
@@ -181,10 +214,61 @@ HWY_INLINE Triple<V> under_coat_albedo(const LayeredMaterial<V>& m) {
           m.specular_albedo.z - m.coat_albedo};
 }
 
+/// z of a direction over its masking, for an alpha along x and one along y.
+template <class V>
+HWY_INLINE V masked_length(const Triple<V>& direction, const Pair<V>& alpha) {
+  const V x = alpha.x * direction.x, y = alpha.y * direction.y;
+  return hn::Sqrt(hn::MulAdd(x, x, hn::MulAdd(y, y, direction.z * direction.z)));
+}
+
+/// GGX with an alpha for x and one for y; `h` in the frame of the lobe.
+template <class V>
+HWY_INLINE V ggx_distribution(const Triple<V>& h, const Pair<V>& alpha) {
+  const hn::DFromV<V> d;
+  const V x = h.x / alpha.x, y = h.y / alpha.y;
+  const V squared = hn::MulAdd(x, x, hn::MulAdd(y, y, h.z * h.z));
+  return hn::Set(d, std::numbers::inv_pi_v<float>) / (alpha.x * alpha.y * squared * squared);
+}
+
+/// D V n.l of the base's lobe in lanes with grain; `h` between the eye and the light along -l.
+template <class V>
+HWY_INLINE V grained_lobe(const LayeredMaterial<V>& m, const Triple<V>& l, const Triple<V>& h) {
+  const hn::DFromV<V> d;
+  const V least = hn::Set(d, 2e-3f);
+  Pair<V> alpha = lobe_alpha(m.roughness, m.anisotropy);
+  alpha = {hn::Max(alpha.x, least), hn::Max(alpha.y, least)};
+  const Triple<V> across = cross_of(m.normal, m.grain);
+  const V n_dot_l = hn::Max(dot(m.normal, l), hn::Zero(d));
+  const Triple<V> light{dot(m.grain, l), dot(across, l), n_dot_l};
+  const Triple<V> view{dot(m.grain, m.eye), dot(across, m.eye), m.n_dot_v};
+  const Triple<V> middle{dot(m.grain, h), dot(across, h), clamped(dot(m.normal, h), 0.0f, 1.0f)};
+  const V masked =
+      hn::MulAdd(n_dot_l, masked_length(view, alpha), m.n_dot_v * masked_length(light, alpha));
+  return ggx_distribution(middle, alpha) * hn::Set(d, 0.5f) * n_dot_l /
+         hn::Max(masked, hn::Set(d, 1e-7f));
+}
+
+/// The normal about which the eye sees what the base's lobe reflects: bent along the grain.
+template <class V>
+HWY_INLINE Triple<V> reflection_normal(const LayeredMaterial<V>& m) {
+  if (!m.grained) return m.normal;
+  const hn::DFromV<V> d;
+  const V one = hn::Set(d, 1.0f);
+  const Triple<V> across = cross_of(m.normal, m.grain);
+  const Triple<V> along = m.eye - across * dot(m.eye, across);
+  const V size = hn::Max(dot(along, along), hn::Set(d, 1e-12f));
+  const Triple<V> bent = along * (one / hn::Sqrt(size));
+  V straight = hn::NegMulAdd(m.anisotropy, one - m.roughness, one);
+  straight = straight * straight;
+  straight = straight * straight;
+  return select(hn::Gt(m.anisotropy, hn::Zero(d)), normalized(mix(bent, m.normal, straight)),
+                m.normal);
+}
+
 template <class V, class Reflection>
 HWY_INLINE Triple<V> environment_specular(const LayeredMaterial<V>& m,
                                           const Reflection& reflection) {
-  const Triple<V> light = under_coat_albedo(m) * reflection(m.normal, m.roughness);
+  const Triple<V> light = under_coat_albedo(m) * reflection(reflection_normal(m), m.roughness);
   if (!m.coated) return light;
   return light + reflection(m.coat_normal, m.coat_roughness) * m.coat_albedo;
 }
@@ -208,8 +292,16 @@ template <class D, class V = hn::Vec<D>>
 HWY_INLINE Triple<V> shade_light(D d, const LayeredMaterial<V>& m, const Triple<V>& l) {
   const V zero = hn::Zero(d);
   Triple<V> light = shade_light(d, static_cast<const SurfaceMaterial<V>&>(m), l);
-  if (!m.coated && !m.fuzzy) return light;
+  if (!m.coated && !m.fuzzy && !m.grained) return light;
   const Triple<V> h = normalized(l + m.eye);
+  if (m.grained) {
+    const V schlick = schlick_weight(dot(m.eye, h));
+    const V lobe = grained_lobe(m, l, h);
+    const V spread = hn::Max(dot(m.normal, l), zero) * hn::Set(d, std::numbers::inv_pi_v<float>);
+    const Triple<V> with_grain =
+        (m.f0 + m.f90_minus_f0 * schlick) * lobe + m.diffuse_albedo * spread;
+    light = select(hn::Gt(m.anisotropy, zero), with_grain, light);
+  }
   if (m.coated) {
     const V n_dot_l = hn::Max(dot(m.coat_normal, l), zero);
     const V n_dot_h = clamped(dot(m.coat_normal, h), 0.0f, 1.0f);
@@ -224,39 +316,6 @@ HWY_INLINE Triple<V> shade_light(D d, const LayeredMaterial<V>& m, const Triple<
         light + m.sheen * (sheen_lobe(n_dot_h, n_dot_l, m.n_dot_v, m.sheen_roughness) * n_dot_l);
   }
   return light;
-}
-
-/// unpack_layer() of texels of the G-buffer's layers.
-template <class D, class V = hn::Vec<D>>
-HWY_INLINE SurfaceLayer<V> unpack_layer(D d, const Quad<V>& texels, V& roughness) {
-  const hn::RebindToUnsigned<D> du;
-  const hn::RebindToSigned<D> di;
-  const auto bits = [du](V word) HWY_ATTR { return hn::BitCast(du, word); };
-  const auto tenth = [&](auto shifted) HWY_ATTR {
-    const V root = hn::ConvertTo(d, hn::BitCast(di, hn::And(shifted, hn::Set(du, 1023u)))) *
-                   hn::Set(d, 1.0f / 1023.0f);
-    return root * root;
-  };
-  const auto f0 = bits(texels.x), coat = bits(texels.z), sheen = bits(texels.w);
-  const auto snorm = [d](auto whole) HWY_ATTR {
-    return hn::Max(hn::ConvertTo(d, whole) * hn::Set(d, 1.0f / 32767.0f), hn::Set(d, -1.0f));
-  };
-  const auto normal = hn::BitCast(di, texels.y);
-  SurfaceLayer<V> layer;
-  layer.f0 = {tenth(f0), tenth(hn::ShiftRight<10>(f0)), tenth(hn::ShiftRight<20>(f0))};
-  layer.f90 = unorm8<24>(d, coat);
-  layer.coat_normal = octahedral_decode(snorm(hn::ShiftRight<16>(hn::ShiftLeft<16>(normal))),
-                                        snorm(hn::ShiftRight<16>(normal)));
-  layer.coat = unorm8<0>(d, coat);
-  layer.coat_roughness = unorm8<8>(d, coat);
-  roughness = unorm8<16>(d, coat);
-  const Triple<V> root{unorm8<0>(d, sheen), unorm8<8>(d, sheen), unorm8<16>(d, sheen)};
-  layer.sheen = root * root;
-  layer.sheen_roughness = unorm8<24>(d, sheen);
-  // A pixel of the G-buffer lets no light through.
-  layer.transmission = hn::Zero(d);
-  layer.transmitted = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-  return layer;
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

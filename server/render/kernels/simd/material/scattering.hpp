@@ -25,11 +25,23 @@ HWY_INLINE Float mis_weight(Float density, Float other) {
   return select(sampled, density / select(sampled, density + other, one()), one());
 }
 
-/// How likely a path takes the specular lobe.
-template <class Material>
-HWY_INLINE Float specular_probability(const Material& m) {
-  const Float specular = luminance(m.specular_albedo);
-  return specular / at_least(specular + luminance(wide_albedo(m)), 1e-6f);
+/// How likely paths take each lobe, and the way through the surface.
+struct LobeProbabilities {
+  Float specular, through, wide;
+};
+
+HWY_INLINE LobeProbabilities lobe_probabilities(Float specular, Float through, Float wide) {
+  const Float sum = at_least(specular + wide + through, 1e-6f);
+  LobeProbabilities of{specular / sum, through / sum, zero()};
+  of.wide = one() - of.specular - of.through;
+  return of;
+}
+HWY_INLINE LobeProbabilities lobe_probabilities(const MaterialLanes& m) {
+  return lobe_probabilities(luminance(m.specular_albedo), zero(), luminance(wide_albedo(m)));
+}
+HWY_INLINE LobeProbabilities lobe_probabilities(const LayeredMaterial<Float>& m) {
+  return lobe_probabilities(luminance(m.specular_albedo), luminance(m.transmitted),
+                            luminance(wide_albedo(m)));
 }
 
 /// BRDF x cosine of the white sheen.
@@ -64,11 +76,9 @@ struct LobeValue {
   Float v_dot_h, reflected, density;
 };
 
-HWY_INLINE LobeValue lobe_value(const MaterialLanes& m, const Float3& lobe_normal, Float roughness,
-                                const Float3& l) {
-  const LobeFrame frame(m, lobe_normal);
+HWY_INLINE LobeValue lobe_value(const LobeFrame& frame, const Float3& l) {
   const Float3& view = frame.view;
-  const Float alpha = roughness * roughness;
+  const Float2& alpha = frame.alpha;
   const Float3 light{dot(l, frame.tangent), dot(l, frame.bitangent), dot(l, frame.normal)};
   const Mask above = hn::Gt(light.z, zero());
   LobeValue value;
@@ -92,20 +102,29 @@ HWY_INLINE Float lobe_weight(const LobeValue& value, Float roughness, Float dens
   return hn::IfThenElseZero(is_scattering(roughness), value.reflected / at_least(both, 1e-30f));
 }
 
+/// Of the base's lobe.
+HWY_INLINE Float3 scattered_base(const MaterialLanes& m, const LobeFrame& frame, const Float3& l,
+                                 Float density, Float probability) {
+  const LobeValue value = lobe_value(frame, l);
+  return microfacet_reflectance(m, value.v_dot_h) *
+         lobe_weight(value, m.roughness, density, probability);
+}
+
 HWY_INLINE Float3 scattered_specular(const MaterialLanes& m, const Float3& l, Float density,
                                      Float probability) {
   if (none(is_scattering(m.roughness))) return numbers(0.0f);
-  const LobeValue value = lobe_value(m, m.normal, m.roughness, l);
-  return microfacet_reflectance(m, value.v_dot_h) *
-         lobe_weight(value, m.roughness, density, probability);
+  return scattered_base(m, LobeFrame(m, m.normal, m.roughness), l, density, probability);
 }
 HWY_INLINE Float3 scattered_specular(const LayeredMaterial<Float>& m, const Float3& l,
                                      Float density, Float probability) {
   const auto& base = static_cast<const MaterialLanes&>(m);
-  if (!m.coated) return scattered_specular(base, l, density, probability);
+  if (!m.coated && !m.grained) return scattered_specular(base, l, density, probability);
   const Float of_coat = coat_share(m);
-  const Float3 light = scattered_specular(base, l, density, probability * (one() - of_coat));
-  const LobeValue value = lobe_value(m, m.coat_normal, m.coat_roughness, l);
+  const LobeFrame frame(m, m.normal, m.roughness, hn::Lt(zero(), zero()));
+  const Float3 light = scattered_base(m, frame, l, density, probability * (one() - of_coat));
+  if (!m.coated) return light;
+  const LobeFrame coat_frame(base, m.coat_normal, m.coat_roughness);
+  const LobeValue value = lobe_value(coat_frame, l);
   const Float coat = hn::MulAdd(m.coat_f90_minus_f0, schlick_weight(value.v_dot_h), m.coat_f0) *
                      lobe_weight(value, m.coat_roughness, density, probability * of_coat);
   return {light.x + coat, light.y + coat, light.z + coat};
@@ -116,15 +135,15 @@ HWY_INLINE Float3 scattered_specular(const LayeredMaterial<Float>& m, const Floa
 template <class Material>
 HWY_INLINE Float3 scattered_light(const Material& m, const Float3& l, Float density, bool diffuse,
                                   bool specular) {
-  const Float probability = specular_probability(m);
+  const LobeProbabilities lobes = lobe_probabilities(m);
   Float3 sent = numbers(0.0f);
   if (diffuse) {
     const Float cosine = dot(l, m.normal);
-    const Float by_cosine = (one() - probability) * cosine_density(cosine);
+    const Float by_cosine = lobes.wide * cosine_density(cosine);
     const Float both = at_least(density + at_least(by_cosine, 0.0f), 1e-30f);
     sent = keep(hn::Gt(cosine, zero()), wide_light(m, l) * (one() / both));
   }
-  return specular ? sent + scattered_specular(m, l, density, probability) : sent;
+  return specular ? sent + scattered_specular(m, l, density, lobes.specular) : sent;
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

@@ -56,36 +56,34 @@ HWY_INLINE Float3 reflecting_normal(const MaterialLanes& m, const Float3& normal
 }
 
 /// A microfacet normal as seen from `view`, in the frame of the shading normal.
-HWY_INLINE Float3 sample_visible_normal(const Float3& view, Float alpha, const Float2& u) {
-  const Float3 stretched = normalized(Float3{alpha * view.x, alpha * view.y, view.z});
+/// `alpha`: along x and along y.
+HWY_INLINE Float3 sample_visible_normal(const Float3& view, const Float2& alpha, const Float2& u) {
+  const Float3 stretched = normalized(Float3{alpha.x * view.x, alpha.y * view.y, view.z});
   const Float angle = u.x * number(2.0f * std::numbers::pi_v<float>);
   const Float z = hn::NegMulAdd(u.y, one() + stretched.z, one());
   const Float radius = hn::Sqrt(clamped(hn::NegMulAdd(z, z, one()), 0.0f, 1.0f));
   const Float x = hn::MulAdd(radius, hn::Cos(tag, angle), stretched.x);
   const Float y = hn::MulAdd(radius, hn::Sin(tag, angle), stretched.y);
-  return normalized(Float3{alpha * x, alpha * y, at_least(z + stretched.z, 1e-7f)});
+  return normalized(Float3{alpha.x * x, alpha.y * y, at_least(z + stretched.z, 1e-7f)});
+}
+HWY_INLINE Float3 sample_visible_normal(const Float3& view, Float alpha, const Float2& u) {
+  return sample_visible_normal(view, Float2{alpha, alpha}, u);
 }
 
 /// G2 / G1(v); 0 below the horizon.
-HWY_INLINE Float visible_normal_weight(const Float3& view, const Float3& light, Float alpha) {
-  const Float a2 = alpha * alpha, rest = one() - a2;
-  const Float toward_view = hn::Sqrt(hn::MulAdd(view.z * view.z, rest, a2));
-  const Float toward_light = hn::Sqrt(hn::MulAdd(light.z * light.z, rest, a2));
+HWY_INLINE Float visible_normal_weight(const Float3& view, const Float3& light,
+                                       const Float2& alpha) {
+  const Float toward_view = masked_length(view, alpha), toward_light = masked_length(light, alpha);
   const Float weight =
       light.z * (view.z + toward_view) / hn::MulAdd(light.z, toward_view, view.z * toward_light);
   return hn::IfThenElseZero(hn::Gt(light.z, zero()), weight);
 }
 
 /// Density per solid angle of the reflected direction `light`.
-HWY_INLINE Float visible_normal_pdf(const Float3& view, const Float3& light, Float alpha) {
+HWY_INLINE Float visible_normal_pdf(const Float3& view, const Float3& light, const Float2& alpha) {
   const Float3 half_vector = normalized(view + light);
-  const Float a2 = alpha * alpha;
-  const Float masking =
-      number(2.0f) * view.z / (view.z + hn::Sqrt(hn::MulAdd(view.z * view.z, one() - a2, a2)));
-  const Float n_dot_h = hn::Min(half_vector.z, one());
-  const Float narrow = hn::MulAdd(one() - n_dot_h, one() + n_dot_h, n_dot_h * n_dot_h * a2);
-  const Float distribution = a2 / (number(std::numbers::pi_v<float>) * narrow * narrow);
-  const Float density = masking * distribution / (number(4.0f) * view.z);
+  const Float masking = number(2.0f) * view.z / (view.z + masked_length(view, alpha));
+  const Float density = masking * ggx_distribution(half_vector, alpha) / (number(4.0f) * view.z);
   return hn::IfThenElseZero(hn::Gt(half_vector.z, zero()), density);
 }
 
@@ -102,22 +100,40 @@ struct LobeSample {
   Float v_dot_h, weight, density;
 };
 
-/// The frame of a lobe about its normal, and the direction to the eye in it.
+/// The frame of a lobe about its normal, whose x is the grain where it has one, and the direction
+/// to the eye in it.
 struct LobeFrame {
   Float3 normal, tangent, bitangent, view;
-  HWY_INLINE LobeFrame(const MaterialLanes& m, const Float3& lobe_normal)
+  Float2 alpha;
+  HWY_INLINE LobeFrame(const MaterialLanes& m, const Float3& lobe_normal, Float roughness)
       : normal(reflecting_normal(m, lobe_normal)) {
     orthonormal_basis(normal, tangent, bitangent);
+    alpha = {roughness * roughness, roughness * roughness};
+    look_from(m.eye);
+  }
+  /// Of lanes that are not `coated` the base's lobe.
+  HWY_INLINE LobeFrame(const LayeredMaterial<Float>& m, const Float3& lobe_normal, Float roughness,
+                       Mask coated)
+      : LobeFrame(m, lobe_normal, roughness) {
+    if (!m.grained) return;
+    const Mask grained = hn::AndNot(coated, hn::Gt(m.anisotropy, zero()));
+    const Float3 along = grain_about(normal, m.grain);
+    tangent = select(grained, along, tangent);
+    bitangent = select(grained, cross(normal, along), bitangent);
+    alpha.x = select(grained, lobe_alpha(roughness, m.anisotropy).x, alpha.x);
+    look_from(m.eye);
+  }
+
+ private:
+  HWY_INLINE void look_from(const Float3& eye) {
     view = normalized(
-        Float3{dot(m.eye, tangent), dot(m.eye, bitangent), at_least(dot(m.eye, normal), 1e-3f)});
+        Float3{dot(eye, tangent), dot(eye, bitangent), at_least(dot(eye, normal), 1e-3f)});
   }
 };
 
-HWY_INLINE LobeSample sample_lobe(const MaterialLanes& m, const Float3& lobe_normal,
-                                  Float roughness, const Float2& u) {
-  const LobeFrame frame(m, lobe_normal);
+HWY_INLINE LobeSample sample_lobe(const MaterialLanes& m, const LobeFrame& frame, const Float2& u) {
   const Float3& view = frame.view;
-  const Float alpha = roughness * roughness;
+  const Float2& alpha = frame.alpha;
   const Float3 microfacet = sample_visible_normal(view, alpha, u);
   LobeSample s;
   s.v_dot_h = dot(view, microfacet);
@@ -126,7 +142,8 @@ HWY_INLINE LobeSample sample_lobe(const MaterialLanes& m, const Float3& lobe_nor
       frame.tangent, light.x, multiply_add(frame.bitangent, light.y, frame.normal * light.z)));
   const Mask open = hn::Gt(dot(s.direction, m.geometric), zero());
   s.weight = hn::IfThenElseZero(open, visible_normal_weight(view, light, alpha));
-  s.density = visible_normal_pdf(view, light, at_least(alpha, 1e-4f));
+  s.density =
+      visible_normal_pdf(view, light, Float2{at_least(alpha.x, 1e-4f), at_least(alpha.y, 1e-4f)});
   return s;
 }
 
@@ -135,7 +152,7 @@ HWY_INLINE Float3 microfacet_reflectance(const MaterialLanes& m, Float v_dot_h) 
 }
 
 HWY_INLINE SpecularSample sample_specular(const MaterialLanes& m, const Float2& u) {
-  const LobeSample s = sample_lobe(m, m.normal, m.roughness, u);
+  const LobeSample s = sample_lobe(m, LobeFrame(m, m.normal, m.roughness), u);
   return {s.direction, microfacet_reflectance(m, s.v_dot_h) * s.weight, s.density, m.roughness};
 }
 
@@ -149,13 +166,14 @@ HWY_INLINE Float coat_share(const LayeredMaterial<Float>& m) {
 
 /// Of a coated surface one of the two lobes is drawn, in proportion to what each gives back.
 HWY_INLINE SpecularSample sample_specular(const LayeredMaterial<Float>& m, Float2 u) {
-  if (!m.coated) return sample_specular(static_cast<const MaterialLanes&>(m), u);
+  if (!m.coated && !m.grained) return sample_specular(static_cast<const MaterialLanes&>(m), u);
   const Float of_coat = coat_share(m);
   const Mask coated = hn::Lt(u.x, of_coat);
   const Float probability = select(coated, of_coat, one() - of_coat);
   u.x = select(coated, u.x, u.x - of_coat) / probability;
   const Float roughness = select(coated, m.coat_roughness, m.roughness);
-  const LobeSample s = sample_lobe(m, select(coated, m.coat_normal, m.normal), roughness, u);
+  const LobeFrame frame(m, select(coated, m.coat_normal, m.normal), roughness, coated);
+  const LobeSample s = sample_lobe(m, frame, u);
   const Float of_lobe = s.weight / probability;
   const Float coat =
       hn::MulAdd(m.coat_f90_minus_f0, schlick_weight(s.v_dot_h), m.coat_f0) * of_lobe;

@@ -7,11 +7,10 @@
 #define HELIOGRAPH_KERNELS_SURFACE_HPP
 #endif
 
-#include "render/kernels/simd/lanes.hpp"
+#include "render/kernels/simd/material/hit_triangles.hpp"
 #include "render/kernels/simd/material/layers.hpp"
 #include "render/kernels/simd/material/slots.hpp"
-#include "render/kernels/simd/ray_writer.hpp"
-#include "shaders/shared/ray.h"
+#include "render/kernels/simd/material/thin_film.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
@@ -26,35 +25,6 @@ HWY_INLINE Float2 octahedral_encode(const Float3& v) {
     return select(hn::Ge(side, zero()), size, hn::Neg(size));
   };
   return {select(above, x, folded(x, y)), select(above, y, folded(y, x))};
-}
-
-struct HitLanes {
-  Mask met;
-  Float t, u, v;
-  Integer instance, triangle;  // of lanes that met nothing: another lane's
-};
-
-/// The hits from `first` on; lanes from `last` on count as misses.
-HWY_INLINE HitLanes load_hits(const shared::Hit* hits, int first, int last) {
-  static_assert(offsetof(shared::Hit, u) == 12 && offsetof(shared::Hit, v) == 16);
-  const Float4 front = records_in_order(hits, 0, first, last);
-  HitLanes h;
-  h.instance = as_integer(front.y);
-  const auto none_met = integer(static_cast<int>(shared::hit_none));
-  const Mask requested = float_mask(hn::Lt(hn::Iota(integer_tag, first), integer(last)));
-  h.met = hn::AndNot(float_mask(hn::Eq(h.instance, none_met)), requested);
-  if (none(h.met)) return h;
-  h.t = front.x;
-  h.u = front.w;
-  h.v = records_in_order(hits, 4, first, last).x;
-  h.triangle = as_integer(front.z);
-  const auto one_met = static_cast<std::size_t>(hn::FindFirstTrue(tag, h.met));
-  h.instance = select(h.met, h.instance, integer(hn::ExtractLane(h.instance, one_met)));
-  h.triangle = select(h.met, h.triangle, integer(hn::ExtractLane(h.triangle, one_met)));
-  h.t = select(h.met, h.t, one());
-  h.u = hn::IfThenElseZero(h.met, h.u);
-  h.v = hn::IfThenElseZero(h.met, h.v);
-  return h;
 }
 
 struct SurfaceLanes {
@@ -82,82 +52,6 @@ struct LayeredSurfaceLanes : SurfaceLanes {
   Float passing;  // fraction of rays that tracers let pass where it covers
 };
 
-/// The columns of an affine matrix.
-struct MatrixLanes {
-  Float3 x, y, z, origin;
-  HWY_INLINE MatrixLanes(const Records& instance, int word)
-      : x(instance.triple(word)),
-        y(instance.triple(word + 4)),
-        z(instance.triple(word + 8)),
-        origin(instance.triple(word + 12)) {}
-  HWY_INLINE Float3 direction(const Float3& v) const {
-    return multiply_add(x, v.x, multiply_add(y, v.y, z * v.z));
-  }
-  HWY_INLINE Float3 point(const Float3& v) const {
-    return multiply_add(x, v.x, multiply_add(y, v.y, multiply_add(z, v.z, origin)));
-  }
-};
-
-/// A vertex of every lane.
-struct VertexLanes {
-  Float3 position, normal;
-  Float4 color, tangent, uv;  // both sets of uv
-};
-
-HWY_NOINLINE inline void read_vertex(const Records& from, VertexLanes& v) {
-  static_assert(offsetof(shared::Vertex, normal) == 16 && offsetof(shared::Vertex, tangent) == 32 &&
-                offsetof(shared::Vertex, uv0) == 48 && offsetof(shared::Vertex, uv1) == 56);
-  const Float4 front = from.four(0), middle = from.four(4);
-  v.position = {front.x, front.y, front.z};
-  v.normal = {middle.x, middle.y, middle.z};
-  v.tangent = from.four(8);
-  v.uv = from.four(12);
-  const auto pair = [](Float packed, Float& low, Float& high) HWY_ATTR {
-    const Integer bits = as_integer(packed);
-    const Float scale = number(1.0f / 65535.0f);
-    low = hn::Mul(to_float(hn::And(bits, integer(0xffff))), scale);
-    high = hn::Mul(to_float(as_integer(hn::ShiftRight<16>(as_unsigned(bits)))), scale);
-  };
-  pair(front.w, v.color.x, v.color.y);
-  pair(middle.w, v.color.z, v.color.w);
-}
-
-/// The corners of each lane's triangle and their weights. Lanes that are not `requested` have the
-/// first vertex three times.
-class TriangleLanes {
- public:
-  HWY_INLINE TriangleLanes(const shared::Vertex* vertices, const std::uint32_t* indices,
-                           Integer first_index, Integer first_vertex, Mask requested) {
-    for (int i = 0; i < 3; ++i) {
-      const Integer index = hn::IfThenElseZero(integer_mask(requested),
-                                               gather(indices, hn::Add(first_index, integer(i))));
-      const Records vertex(vertices, hn::Add(first_vertex, index), sizeof(shared::Vertex) / 4);
-      read_vertex(vertex, corners_[static_cast<std::size_t>(i)]);
-    }
-  }
-
-  /// The point that between() is about.
-  HWY_INLINE void set_point(Float u, Float v) {
-    weight_a_ = hn::Sub(hn::Sub(one(), u), v);
-    weight_b_ = u;
-    weight_c_ = v;
-  }
-  HWY_INLINE Float between(Float a, Float b, Float c) const {
-    return hn::MulAdd(a, weight_a_, hn::MulAdd(b, weight_b_, hn::Mul(c, weight_c_)));
-  }
-  HWY_INLINE Float3 between(const Float3& a, const Float3& b, const Float3& c) const {
-    return multiply_add(a, weight_a_, multiply_add(b, weight_b_, c * weight_c_));
-  }
-  HWY_INLINE Float3 position() const { return between(a().position, b().position, c().position); }
-  HWY_INLINE const VertexLanes& a() const { return corners_[0]; }
-  HWY_INLINE const VertexLanes& b() const { return corners_[1]; }
-  HWY_INLINE const VertexLanes& c() const { return corners_[2]; }
-
- private:
-  std::array<VertexLanes, 3> corners_;
-  Float weight_a_, weight_b_, weight_c_;
-};
-
 /// One uv set of the corners. `footprint` is log2 of the squared fraction of the triangle that the
 /// ray's cone covers.
 HWY_INLINE void read_uv(const TriangleLanes& t, const Float2& a, const Float2& b, const Float2& c,
@@ -180,14 +74,8 @@ HWY_INLINE Float3 mapped_normal(Slots& slots, int slot, const Records& record, i
   const Float2 slope{hn::Mul(hn::MulSub(texel.x, number(2.0f), one()), scale),
                      hn::Mul(hn::MulSub(texel.y, number(2.0f), one()), scale)};
   const Float height = hn::MulSub(texel.z, number(2.0f), one());
-  const Float4 &a = triangle.a().tangent, &b = triangle.b().tangent, &c = triangle.c().tangent;
-  Float3 tangent =
-      world.direction(triangle.between({a.x, a.y, a.z}, {b.x, b.y, b.z}, {c.x, c.y, c.z}));
-  tangent = tangent - normal * dot(normal, tangent);
-  const Float size = dot(tangent, tangent);
-  mapped = hn::And(mapped, hn::Ge(size, number(1e-12f)));
-  tangent = tangent * hn::Div(one(), hn::Sqrt(at_least(size, 1e-30f)));
-  const Float3 bitangent = cross(normal, tangent) * hn::Mul(a.w, handedness);
+  Float3 tangent, bitangent;
+  mapped = hn::And(mapped, tangent_plane(triangle, world, handedness, normal, tangent, bitangent));
   const Float3 turned =
       normalized(multiply_add(tangent, slope.x, multiply_add(bitangent, slope.y, normal * height)));
   return select(mapped, turned, normal);
@@ -245,39 +133,6 @@ HWY_INLINE LookupLanes texture_lookup(const TriangleLanes& triangle, const Recor
   return lookup;
 }
 
-/// What the tables hold of the triangles in `hit`.
-struct HitRecords {
-  Records instance;
-  MatrixLanes world;
-  Float handedness;
-  Float4 mesh;
-  Records material;
-  TriangleLanes triangle;
-
-  HWY_INLINE HitRecords(const SceneView& scene, const HitLanes& hit)
-      : instance(scene.instances, hit.instance, sizeof(shared::Instance) / 4),
-        world(instance, HELIOGRAPH_WORD(shared::Instance, world)),
-        handedness(one()),
-        mesh(mesh_of(scene, instance, handedness)),
-        material(scene.materials, as_integer(mesh.w), sizeof(Material) / 4),
-        triangle(scene.vertices, scene.indices,
-                 hn::Add(as_integer(mesh.x), hn::Mul(hit.triangle, integer(3))), as_integer(mesh.z),
-                 hit.met) {}
-
- private:
-  static HWY_INLINE Float4 mesh_of(const SceneView& scene, const Records& instance,
-                                   Float& handedness) {
-    static_assert(offsetof(shared::Instance, flags) == offsetof(shared::Instance, mesh) + 4);
-    const Float4 attributes = instance.four(HELIOGRAPH_WORD(shared::Instance, mesh));
-    const Integer flipped =
-        hn::And(as_integer(attributes.y), integer(static_cast<int>(shared::instance_flipped)));
-    handedness = select(float_mask(hn::Ne(flipped, integer(0))), number(-1.0f), one());
-    static_assert(offsetof(shared::Mesh, first_vertex) == 8 &&
-                  offsetof(shared::Mesh, material) == 12);
-    return Records(scene.meshes, as_integer(attributes.x), sizeof(shared::Mesh) / 4).four(0);
-  }
-};
-
 /// What extensions add, with the textures of `slots`. `mapped`: the coat's normals. Not inlined: in
 /// most scenes with layers few surfaces have any.
 template <bool one_level>
@@ -313,11 +168,53 @@ HWY_NOINLINE void evaluate_layer(LayerSlots<one_level>& slots, const Records& fr
   layer.transmitted = {remaining(absorption.x), remaining(absorption.y), remaining(absorption.z)};
 }
 
+/// The grain of surfaces, at the front face's normal.
+template <bool one_level>
+HWY_NOINLINE void add_grain(LayerSlots<one_level>& slots, const Records& from,
+                            const HitRecords& records, const Float3& vertex_normal,
+                            SurfaceLayer<Float>& layer) {
+  static_assert(offsetof(Layer, grain_y) == offsetof(Layer, anisotropy) + 8);
+  layer.grain = {one(), zero(), zero()};
+  const Float4 factors = from.four(HELIOGRAPH_WORD(Layer, anisotropy));
+  layer.anisotropy = factors.x;
+  if (none(hn::Gt(factors.x, zero()))) return;
+  constexpr int slot = HELIOGRAPH_WORD(Layer, anisotropy_slot);
+  const Mask mapped = slots.used(slot);
+  const Float4 texel = slots.texel(slot);
+  const Float x = select(mapped, hn::MulSub(texel.x, number(2.0f), one()), one());
+  const Float y = hn::IfThenElseZero(mapped, hn::MulSub(texel.y, number(2.0f), one()));
+  Float3 tangent, bitangent;
+  const Mask has_tangent = tangent_plane(records.triangle, records.world, records.handedness,
+                                         vertex_normal, tangent, bitangent);
+  const Float3 grain = tangent * hn::MulSub(factors.y, x, factors.z * y) +
+                       bitangent * hn::MulAdd(factors.z, x, factors.y * y);
+  const Float size = dot(grain, grain);
+  layer.grain = grain * hn::Div(one(), hn::Sqrt(at_least(size, 1e-12f)));
+  layer.anisotropy =
+      hn::IfThenElseZero(hn::And(has_tangent, hn::Gt(size, number(1e-6f))), factors.x * texel.z);
+}
+
+/// The film on surfaces, whose normal and metalness are known.
+template <bool one_level>
+HWY_INLINE void add_film(LayerSlots<one_level>& slots, const Records& from, const Float3& direction,
+                         LayeredSurfaceLanes& s) {
+  static_assert(offsetof(Layer, film_thickness) == offsetof(Layer, iridescence) + 12);
+  const Float4 factors = from.four(HELIOGRAPH_WORD(Layer, iridescence));
+  if (none(hn::Gt(factors.x, zero()))) return;
+  ThinFilm film;
+  film.share = factors.x * slots.texel(HELIOGRAPH_WORD(Layer, iridescence_slot)).x;
+  film.ior = factors.y;
+  film.thickness = mix(factors.z, factors.w, slots.texel(HELIOGRAPH_WORD(Layer, film_slot)).y);
+  film.share = hn::IfThenElseZero(hn::Gt(film.thickness, zero()), film.share);
+  const Float cosine = clamped(hn::Neg(dot(s.normal, direction)), 1e-3f, 1.0f);
+  add_film(film, cosine, s.metallic, s.layer, s.base_color);
+}
+
 /// The layers of `s`, at the front face's normal.
 template <bool one_level>
 HWY_INLINE void add_layer(const SceneView& scene, const HitRecords& records,
-                          const LookupLanes& lookup, const Float3& vertex_normal, Float side,
-                          LayeredSurfaceLanes& s) {
+                          const LookupLanes& lookup, const Float3& direction,
+                          const Float3& vertex_normal, Float side, LayeredSurfaceLanes& s) {
   const Integer number = records.material.whole(HELIOGRAPH_WORD(Material, layer));
   const Records from(scene.layers, number, sizeof(Layer) / 4);
   LayerSlots<one_level> slots(scene, from, lookup);
@@ -329,6 +226,8 @@ HWY_INLINE void add_layer(const SceneView& scene, const HitRecords& records,
   evaluate_layer<one_level>(slots, from,
                             select(plain, numbers(glm::vec3(0.0f, 0.0f, 1.0f)), coat_normal) * side,
                             s.layer);
+  add_grain<one_level>(slots, from, records, vertex_normal, s.layer);
+  add_film<one_level>(slots, from, direction, s);
   s.passing = records.material.real(HELIOGRAPH_WORD(Material, passing));
   s.alpha = select(s.has(shared::material_whole_alpha), one(), s.alpha);
 }
@@ -376,7 +275,7 @@ HWY_INLINE Surface surface_at(const SceneView& scene, const HitRecords& records,
              side;
   evaluate_material<one_level>(slots, base, triangle, material, s);
   if constexpr (Surface::layered) {
-    add_layer<one_level>(scene, records, lookup, vertex_normal, side, s);
+    add_layer<one_level>(scene, records, lookup, direction, vertex_normal, side, s);
   }
   return s;
 }
