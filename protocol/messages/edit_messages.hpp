@@ -11,6 +11,7 @@
 #include "protocol/messages/material_messages.hpp"
 #include "protocol/messages/scene_messages.hpp"
 #include "protocol/messages/section_messages.hpp"
+#include "protocol/messages/texture_messages.hpp"
 
 // Messages about what a session has changed in its scene, as one document, and about lights that
 // are not in the scene's file.
@@ -84,6 +85,7 @@ struct EditDocument {
   std::vector<LightAdd> added_lights;
   std::vector<std::string> removed_lights;
   std::vector<MaterialsPatch> materials;
+  std::vector<TextureEdit> textures;
   std::vector<std::uint32_t> hidden;
   std::vector<std::uint32_t> isolated;
   std::optional<EnvironmentEdit> environment;
@@ -104,6 +106,10 @@ struct EditDocument {
             .length(0, max_edited_parts)
             .or_default(),
         field("materials", &EditDocument::materials, "Changes of materials, as materials.patch.")
+            .length(0, max_edited_parts)
+            .or_default(),
+        field("textures", &EditDocument::textures,
+              "Slots of materials with another image than in the file, or without one.")
             .length(0, max_edited_parts)
             .or_default(),
         field("hidden", &EditDocument::hidden, "Ids of all nodes that are not visible.")

@@ -173,6 +173,7 @@ struct SceneProgress {
   std::string name;
   std::string stage;
   double fraction = 0.0;
+  bool first_view = false;
   std::string by;
 
   static constexpr auto fields() {
@@ -182,6 +183,8 @@ struct SceneProgress {
               "Stage of loading; ready, cancelled or failed at its end."),
         field("fraction", &SceneProgress::fraction, "Fraction of the work that is done.")
             .range(0, 1),
+        field("first_view", &SceneProgress::first_view,
+              "Whether frames show the scene already, without its textures."),
         field("by", &SceneProgress::by, "The viewer that loads it; empty: the server."),
     };
   }

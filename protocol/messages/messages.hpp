@@ -19,3 +19,4 @@
 #include "protocol/messages/section_messages.hpp"
 #include "protocol/messages/session_messages.hpp"
 #include "protocol/messages/stream_messages.hpp"
+#include "protocol/messages/texture_messages.hpp"

@@ -302,6 +302,10 @@ export interface EditDocumentLights {
 }
 
 export interface MaterialPatch {
+  /** How much rougher the surface is in one direction. */
+  anisotropy?: number | null;
+  /** Of that direction, from the tangent or the texture's direction to the bitangent. [radians] */
+  anisotropy_rotation?: number | null;
   /** Linear colour of white light after the attenuation distance. */
   attenuation_color?: Vector3 | null;
   /** Distance after which light has the attenuation colour; 0: infinite. [metres] */
@@ -314,10 +318,20 @@ export interface MaterialPatch {
   clearcoat_normal_scale?: number | null;
   /** Perceptual roughness of the clear coat. */
   clearcoat_roughness?: number | null;
+  /** How far the colours are bent apart: 20 / Abbe number. */
+  dispersion?: number | null;
   /** Linear emitted radiance. */
   emissive?: Vector3 | null;
   /** Index of refraction: 1 and more, or 0: all light is reflected. */
   ior?: number | null;
+  /** Fraction under a thin film. */
+  iridescence?: number | null;
+  /** Index of refraction of the film. */
+  iridescence_ior?: number | null;
+  /** Thickness of the film where its texture is 1, and without a texture. [nanometres] */
+  iridescence_thickness_maximum?: number | null;
+  /** Thickness of the film where its texture is 0. [nanometres] */
+  iridescence_thickness_minimum?: number | null;
   /** Metalness. */
   metallic?: number | null;
   /** Scale of the normal texture. */
@@ -366,6 +380,15 @@ export interface Section {
   planes: SectionPlane[];
 }
 
+export interface EditDocumentTextures {
+  /** A name from images.list; null: no texture. */
+  image: string | null;
+  /** A name from materials.list. */
+  material: string;
+  /** A slot of textures.list. */
+  slot: string;
+}
+
 export interface EditDocument {
   /** Lights that are not in the file, as lights.add. */
   added_lights?: LightAdd[];
@@ -383,6 +406,8 @@ export interface EditDocument {
   removed_lights?: string[];
   /** Planes that cut the scene open, as section.set; absent: none. */
   section?: Section;
+  /** Slots of materials with another image than in the file, or without one. */
+  textures?: EditDocumentTextures[];
   /** Version of this format. */
   version: number;
 }
@@ -897,6 +922,10 @@ export interface LightsRemoveParams {
 export interface MaterialInfo {
   /** Opacity below which there is a hole, of materials with an alpha mask. */
   alpha_cutoff?: number;
+  /** How much rougher the surface is in one direction, factor on the texture, if any. */
+  anisotropy?: number;
+  /** Of that direction, from the tangent or the texture's direction to the bitangent. [radians] */
+  anisotropy_rotation?: number;
   /** Linear colour of white light after the attenuation distance. */
   attenuation_color?: Vector3;
   /** Distance after which light has the attenuation colour; 0: infinite. [metres] */
@@ -911,10 +940,20 @@ export interface MaterialInfo {
   clearcoat_normal_scale?: number;
   /** Perceptual roughness of the clear coat, factor on the texture, if any. */
   clearcoat_roughness?: number;
+  /** How far the colours are bent apart: 20 / Abbe number. */
+  dispersion?: number;
   /** Linear emitted radiance, factor on the texture, if any. */
   emissive: Vector3;
   /** Index of refraction; 0: it reflects all light. */
   ior?: number;
+  /** Fraction under a thin film, factor on the texture, if any. */
+  iridescence?: number;
+  /** Index of refraction of the film. */
+  iridescence_ior?: number;
+  /** Thickness of the film where its texture is 1, and without a texture. [nanometres] */
+  iridescence_thickness_maximum?: number;
+  /** Thickness of the film where its texture is 0. [nanometres] */
+  iridescence_thickness_minimum?: number;
   /** Metalness, factor on the texture, if any. */
   metallic: number;
   /** Unique name for materials.patch. */
@@ -955,6 +994,66 @@ export interface MaterialsPatchResult {
   material: MaterialInfo;
   /** Revision of the session's state. */
   rev: number;
+}
+
+export interface ImagesListResultImages {
+  /** Size of the file. [bytes] */
+  bytes: number;
+  /** Name for textures.set. */
+  name: string;
+}
+
+/** Result of images.list. */
+export interface ImagesListResult {
+  /** The images that were uploaded, by name. */
+  images: ImagesListResultImages[];
+}
+
+export interface TexturesListResultTextures {
+  /** Name of the image that the scene file has there, perhaps empty; absent: it has no texture. */
+  file_image?: string;
+  /** Height of that image; 0: it cannot be read. [pixels] */
+  height: number;
+  /** The image of images.list that takes its place; absent: none. */
+  image?: string;
+  /** A name from materials.list. */
+  material: string;
+  /** Whether the slot's texture is removed. */
+  removed: boolean;
+  /** The slot, one of textures.list. */
+  slot: string;
+  /** Width of that image; 0: it cannot be read. [pixels] */
+  width: number;
+}
+
+/** Result of textures.list. */
+export interface TexturesListResult {
+  /** Revision of the session's state. */
+  rev: number;
+  /** The slots that every material has. */
+  slots: string[];
+  /** Slots with a texture in the scene file, or that are changed, by material. */
+  textures: TexturesListResultTextures[];
+}
+
+/** Parameters of textures.set. */
+export interface TexturesSetParams {
+  /** A name from materials.list. */
+  material: string;
+  /** A slot of textures.list. */
+  slot: string;
+  /** A name from images.list; null: the texture of the scene file. */
+  image?: string | null;
+  /** Instead of an image: no texture. */
+  removed?: boolean;
+}
+
+/** Result of textures.set. */
+export interface TexturesSetResult {
+  /** Revision of the session's state. */
+  rev: number;
+  /** The slot after the change. */
+  texture: TexturesListResultTextures;
 }
 
 export interface EnvironmentInfo {
@@ -1549,6 +1648,8 @@ export interface AnimationChangedNotification {
 export interface SceneProgress {
   /** The viewer that loads it; empty: the server. */
   by: string;
+  /** Whether frames show the scene already, without its textures. */
+  first_view: boolean;
   /** Fraction of the work that is done. */
   fraction: number;
   /** The scene that is being loaded. */
@@ -1786,8 +1887,8 @@ export interface Methods {
   /** Lists the scenes that can be loaded. */
   "scene.list": { params: Empty; result: SceneList };
   /**
-   * Loads a scene and shows it; scene.progress reports the progress. On failure the current scene
-   * stays.
+   * Loads a scene and shows it; scene.progress reports the progress. Viewers see scenes with large
+   * images without their textures first. On failure the current scene stays.
    */
   "scene.load": { params: SceneLoadParams; result: SceneInfo };
   /** Cancels the load that is in progress. The current scene stays. */
@@ -1881,6 +1982,15 @@ export interface Methods {
   "materials.list": { params: Empty; result: MaterialsListResult };
   /** Edits a material of this session's scene by a merge patch (RFC 7386). */
   "materials.patch": { params: EditDocumentMaterials; result: MaterialsPatchResult };
+  /** Lists the images that were uploaded, for textures.set. */
+  "images.list": { params: Empty; result: ImagesListResult };
+  /** Lists the textures of the scene's materials, and what takes their place. */
+  "textures.list": { params: Empty; result: TexturesListResult };
+  /**
+   * Puts an uploaded image in the place of a material's texture, removes the texture, or restores
+   * that of the file. Answers when the scene is loaded with it; until then it is shown as before.
+   */
+  "textures.set": { params: TexturesSetParams; result: TexturesSetResult };
   /** Lists the environments that the server has, and returns the current one. */
   "environment.list": { params: Empty; result: EnvironmentState };
   /** Sets the environment of this session, which stays with other scenes, or rotates it. */
@@ -1992,12 +2102,14 @@ export interface Notifications {
   /** Another viewer changed a light. */
   "lights.changed": LightsChangedNotification;
   /**
-   * Another viewer added or removed a light, or applied an edit document: lights, materials and
-   * nodes are to be listed again.
+   * Another viewer added or removed a light, or applied an edit document: lights, materials,
+   * textures and nodes are to be listed again.
    */
   "edits.changed": EditsChangedNotification;
   /** Another viewer changed a material. */
   "materials.changed": MaterialsChangedNotification;
+  /** Another viewer changed a texture: textures are to be listed again. */
+  "textures.changed": EditsChangedNotification;
   /** Another viewer changed the environment. */
   "environment.changed": EnvironmentChangedNotification;
   /** Another viewer hid, showed or isolated nodes. */

@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 using protocol::Result;
 
 /// What "heliograph render" has to be told of this server.
-std::vector<std::string> render_arguments(const ServeOptions& options) {
+std::vector<std::string> render_arguments(const ServeOptions& options,
+                                          const std::vector<fs::path>& image_roots) {
   std::vector<std::string> arguments;
   const auto add = [&](const char* name, const std::string& value) {
     if (!value.empty()) arguments.insert(arguments.end(), {name, value});
@@ -29,6 +30,7 @@ std::vector<std::string> render_arguments(const ServeOptions& options) {
   if (!options.environment.empty()) {
     add("--environment", fs::absolute(options.environment).string());
   }
+  for (const fs::path& root : image_roots) add("--images", fs::absolute(root).string());
   add("--preset", options.settings.preset);
   for (const std::string& assignment : options.settings.assignments) add("--set", assignment);
   const std::vector<std::string> limits = limit_arguments(options.limits);
@@ -89,7 +91,7 @@ std::unique_ptr<jobs::JobQueue> make_job_queue(const ServeOptions& options,
                            .quota = options.job_quota,
                            .max_waiting = options.max_waiting_jobs,
                            .keep_seconds = static_cast<double>(options.keep_jobs),
-                           .render_arguments = render_arguments(options),
+                           .render_arguments = render_arguments(options, hosting.image_roots),
                            .webhook_hosts = options.webhook_hosts,
                            .webhook_secret = options.webhook_secret,
                            .catalogue = [catalogue] { return read_catalogue(*catalogue); },

@@ -127,6 +127,15 @@ void add_environment_option(CLI::App& command, std::string& environment) {
       ->group("Scenes");
 }
 
+void add_images_option(CLI::App& command, std::string& images) {
+  command
+      .add_option("--images", images,
+                  "Folder with the images that edits put in the place of textures "
+                  "[that of the edits, then that of the scene]")
+      ->type_name("FOLDER")
+      ->check(CLI::ExistingDirectory);
+}
+
 void add_limit_options(CLI::App& command, scene::ImportLimits& limits) {
   constexpr const char* group = "Limits of scenes";
   visit_limits(limits, [&](const char* name, auto& limit, const char* help) {

@@ -24,6 +24,7 @@ CLI::Validator preset_name();
 void add_view_options(CLI::App& command, RenderOptions& options);
 void add_log_options(CLI::App& command, LogOptions& options);
 void add_environment_option(CLI::App& command, std::string& environment);
+void add_images_option(CLI::App& command, std::string& images);
 /// Limits beyond which a scene file is refused.
 void add_limit_options(CLI::App& command, scene::ImportLimits& limits);
 /// The options that give another program of ours these limits.

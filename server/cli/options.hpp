@@ -84,6 +84,7 @@ struct RenderOptions {
   std::string format;               // empty: by the extension of the output
   std::string reference;            // reference.scope; empty: no path tracing
   std::string edits;                // file; empty: none
+  std::string images;               // folder; empty: those of the edits and of the scene
   std::string path;                 // file of a camera path; empty: none
   std::string orbit;                // AZIMUTH,ELEVATION; empty: none
   SettingsOptions settings;
@@ -112,6 +113,7 @@ struct ExportOptions {
   std::string scene;    // file
   std::string variant;  // of its materials; empty: the file's own
   std::string edits;    // file; empty: none
+  std::string images;   // folder; empty: those of the edits and of the scene
   std::string output;
   scene::ImportLimits limits;
 };

@@ -15,6 +15,7 @@
 #include "cli/job_options.hpp"
 #include "cli/log.hpp"
 #include "cli/malloc_thresholds.hpp"
+#include "cli/option_groups.hpp"
 #include "cli/scene_roots.hpp"
 #include "net/server.hpp"
 #include "render/api/devices.hpp"
@@ -170,6 +171,7 @@ int run(const ServeOptions& options) {
   if (uploads) {
     hosting.scene_roots.push_back(uploads->scenes());
     hosting.environment_roots.push_back(uploads->environments());
+    hosting.image_roots.push_back(uploads->images());
     hosting.max_upload_bytes = uploads->max_bytes();
   }
   const std::optional<std::string> scene =

@@ -170,8 +170,9 @@ void add_scene_options(CLI::App& command, ServeOptions& options) {
   add_environment_option(command, options.environment);
   command
       .add_option("--uploads", options.uploads,
-                  "Folder for scenes and environments that clients upload with PUT "
-                  "/api/v1/scenes/NAME and /api/v1/environments/NAME [no uploads]")
+                  "Folder for scenes, environments and images that clients upload with PUT "
+                  "/api/v1/scenes/NAME, /api/v1/environments/NAME and /api/v1/images/NAME "
+                  "[no uploads]")
       ->type_name("FOLDER")
       ->group(group);
   command

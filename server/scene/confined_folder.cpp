@@ -22,8 +22,7 @@ ConfinedFolder::ConfinedFolder(const std::filesystem::path& folder, std::uint64_
   if (error) throw ImportError("the scene's folder cannot be opened");
 }
 
-std::vector<std::uint8_t> ConfinedFolder::read(const std::string& relative,
-                                               const std::stop_token& stop) {
+std::filesystem::path ConfinedFolder::resolve(const std::string& relative) const {
   const std::string label = in_quotes(relative);
   const auto outside = [&] { throw ImportError(label + " is outside the scene's folder"); };
   if (relative.find('\0') != std::string::npos)
@@ -36,8 +35,18 @@ std::vector<std::uint8_t> ConfinedFolder::read(const std::string& relative,
   const std::filesystem::path resolved = std::filesystem::canonical(root_ / requested, error);
   if (error) throw MissingFile(label + " is missing");
   if (!is_inside(resolved, root_)) outside();
+  return resolved;
+}
+
+std::uint64_t ConfinedFolder::size_of(const std::string& relative) const {
+  return examine_file(resolve(relative)).bytes;
+}
+
+std::vector<std::uint8_t> ConfinedFolder::read(const std::string& relative,
+                                               const std::stop_token& stop) {
+  const std::filesystem::path resolved = resolve(relative);
   files_.push_back(examine_file(resolved));
-  std::vector<std::uint8_t> bytes = read_regular_file(resolved, budget_, label, stop);
+  std::vector<std::uint8_t> bytes = read_regular_file(resolved, budget_, in_quotes(relative), stop);
   budget_ -= bytes.size();
   return bytes;
 }

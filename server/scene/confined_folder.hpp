@@ -23,10 +23,16 @@ class ConfinedFolder {
   /// budget
   std::vector<std::uint8_t> read(const std::string& relative, const std::stop_token& stop = {});
 
+  /// Bytes of the file at `relative`, which is not read. @throws ImportError as read() does
+  std::uint64_t size_of(const std::string& relative) const;
+
   /// The files read, as they were before reading.
   const std::vector<SourceFile>& files() const { return files_; }
 
  private:
+  /// Where the file lies. @throws ImportError
+  std::filesystem::path resolve(const std::string& relative) const;
+
   std::filesystem::path root_;
   std::uint64_t budget_ = 0;
   std::vector<SourceFile> files_;

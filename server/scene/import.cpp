@@ -3,14 +3,13 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
-#include <atomic>
 #include <chrono>
 #include <cmath>
-#include <exception>
+#include <memory>
 #include <new>
 #include <optional>
 #include <set>
-#include <thread>
+#include <span>
 #include <utility>
 
 #include "scene/animation/deform.hpp"
@@ -28,11 +27,14 @@
 #include "scene/gltf/materials/images.hpp"
 #include "scene/gltf/materials/layer_table.hpp"
 #include "scene/gltf/materials/materials.hpp"
+#include "scene/gltf/materials/texture_overrides.hpp"
 #include "scene/gltf/materials/textures.hpp"
+#include "scene/gltf/materials/untextured.hpp"
 #include "scene/gltf/nodes/animation.hpp"
 #include "scene/gltf/nodes/cameras.hpp"
 #include "scene/gltf/nodes/lights.hpp"
 #include "scene/gltf/nodes/nodes.hpp"
+#include "scene/gltf/parts_done.hpp"
 #include "scene/import_error.hpp"
 #include "scene/warnings.hpp"
 
@@ -66,38 +68,6 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
-/// Counts finished parts of several threads and reports progress on the thread that created it. An
-/// exception of the callback is rethrown on all threads.
-class PartsDone {
- public:
-  PartsDone(std::function<void(float fraction)> tell, std::size_t parts,
-            const std::stop_token& stop)
-      : tell_(std::move(tell)), parts_(parts), stop_(stop) {}
-
-  void add_one() {
-    throw_if_cancelled(stop_);
-    const std::size_t done = ++done_;
-    if (stopped_) std::rethrow_exception(reason_);
-    if (std::this_thread::get_id() != home_) return;
-    try {
-      tell_(float(done) / float(parts_));
-    } catch (...) {
-      reason_ = std::current_exception();
-      stopped_ = true;
-      throw;
-    }
-  }
-
- private:
-  const std::function<void(float fraction)> tell_;
-  const std::size_t parts_;
-  const std::stop_token& stop_;
-  const std::thread::id home_ = std::this_thread::get_id();
-  std::atomic<std::size_t> done_ = 0;
-  std::atomic<bool> stopped_ = false;
-  std::exception_ptr reason_;  // set by the first exception
-};
-
 class Importer {
  public:
   /// `source`: a path, or an open file.
@@ -118,6 +88,7 @@ class Importer {
     const auto shown = choose_scene(model, options_.choice.scene);
     scene_.scenes = read_scene_names(model);
     scene_.shown_scene = shown.value_or(0);
+    scene_.choice = options_.choice;
     const std::vector<Accessor> accessors = read_accessors(*file_, limits_, stop_);
     check_skins(model, accessors);
     check_animations(model, accessors);
@@ -133,52 +104,60 @@ class Importer {
     const std::vector<Light> lights = read_lights(model);
     const std::vector<Camera> cameras = read_cameras(model);
     NodeTable nodes = read_nodes(model, accessors, shown, limits_, warnings_, stop_);
-    const std::vector<ImageSource> images = read_image_sources(*file_, limits_, stop_);
+    const std::vector<std::uint32_t> mesh_materials = choose_materials(primitives);
+    const std::uint64_t image_bytes = options_.untextured ? image_file_bytes(*file_) : 0;
+    const bool in_two_steps =
+        options_.untextured && options_.textures.empty() && image_bytes >= options_.untextured_from;
+    std::vector<ImageSource> images;
+    if (!in_two_steps) images = read_image_sources(*file_, limits_, stop_);
+    const std::vector<SourceFile> replacing =
+        override_textures(options_.textures, scene_, textures, images, limits_, stop_);
 
     times_.check = watch.lap();
     scene_.textures = textures.used_textures();
-    const std::vector<std::uint32_t> mesh_materials = choose_materials(primitives);
-    const std::size_t parts = primitives.primitives.size() + textures.image_uses().size();
-    PartsDone done([&](float fraction) { report("meshes and images", 0.1f + 0.85f * fraction); },
-                   parts, stop_);
-    const KeptLevels kept{options_.kept_textures, images_with_alpha(textures)};
-    std::vector<std::string> problems;
-    std::uint32_t kept_side = 0;
-    FirstFailure failure;
-    const auto guarded = [&](double& seconds, const auto& task) {
-      const Stopwatch own;
-      failure.guard(task);
-      seconds = own.seconds();
+    const auto build = [&](PartsDone& done) {
+      return timed(times_.geometry,
+                   [&] { build_meshes(primitives, accessors, mesh_materials, done); });
     };
-    tbb::parallel_invoke(
-        [&] {
-          guarded(times_.geometry,
-                  [&] { build_meshes(primitives, accessors, mesh_materials, done); });
-        },
-        [&] {
-          guarded(times_.images, [&] {
-            auto decoded = decode_images(images, textures.image_uses(), kept, limits_, stop_,
-                                         [&] { done.add_one(); });
-            scene_.images = std::move(decoded.images);
-            kept_side = decoded.kept_side;
-            problems = std::move(decoded.problems);
+    const auto place = [&] {
+      scene_.clips = read_clips(model, accessors, nodes, budget_, warnings_);
+      scene_.skins = read_skins(model, accessors, nodes, budget_);
+      scene_.nodes = nodes.nodes;
+      place_instances(nodes, primitives);
+      place_lights_and_cameras(nodes, lights, cameras);
+    };
+    const std::size_t meshes = primitives.primitives.size();
+    const std::size_t uses = textures.image_uses().size();
+    if (in_two_steps) {
+      PartsDone meshes_done([&](float fraction) { report("meshes", 0.1f + 0.1f * fraction); },
+                            meshes, stop_);
+      build(meshes_done);
+      timed(times_.place, place);
+      file_->drop_views();
+      options_.untextured(std::make_unique<Scene>(without_textures(scene_)), image_bytes);
+      report("textures", 0.2f);
+      PartsDone done([&](float fraction) { report("textures", 0.2f + 0.75f * fraction); }, uses,
+                     stop_);
+      timed(times_.images, [&] {
+        images = read_image_sources(*file_, limits_, stop_);
+        decode(images, textures, done);
+      });
+    } else {
+      PartsDone done([&](float fraction) { report("meshes and images", 0.1f + 0.85f * fraction); },
+                     meshes + uses, stop_);
+      FirstFailure failure;
+      tbb::parallel_invoke(
+          [&] { failure.guard([&] { build(done); }); },
+          [&] {
+            failure.guard([&] { timed(times_.images, [&] { decode(images, textures, done); }); });
           });
-        });
-    failure.rethrow();
-    watch.lap();
-    drop_missing_images(scene_, problems, warnings_);
-    build_layers(scene_);
-    build_alpha_heap(scene_);
-    for (Image& image : scene_.images) drop_large_levels(image, kept_side);
-
-    scene_.clips = read_clips(model, accessors, nodes, budget_, warnings_);
-    scene_.skins = read_skins(model, accessors, nodes, budget_);
-    scene_.nodes = nodes.nodes;
-    place_instances(nodes, primitives);
-    place_lights_and_cameras(nodes, lights, cameras);
+      failure.rethrow();
+      timed(times_.place, place);
+    }
+    finish_images();
     scene_.warnings = warnings_.take();
     scene_.sources = file_->sources();
-    times_.place = watch.seconds();
+    scene_.sources.insert(scene_.sources.end(), replacing.begin(), replacing.end());
     report("done", 1.0f);
     return std::move(scene_);
   }
@@ -189,6 +168,29 @@ class Importer {
   void report(std::string_view stage, float fraction) const {
     throw_if_cancelled(stop_);
     if (options_.progress) options_.progress(stage, fraction);
+  }
+
+  /// Runs `task`, and sets `seconds` to the time that it took.
+  template <class Task>
+  static void timed(double& seconds, const Task& task) {
+    const Stopwatch watch;
+    task();
+    seconds = watch.seconds();
+  }
+
+  void decode(std::span<const ImageSource> sources, const TextureTable& textures, PartsDone& done) {
+    const KeptLevels kept{options_.kept_textures, images_with_alpha(textures)};
+    decoded_ = decode_images(sources, textures.image_uses(), kept, limits_, stop_,
+                             [&] { done.add_one(); });
+  }
+
+  /// Takes the decoded images, and everything that depends on their texels.
+  void finish_images() {
+    scene_.images = std::move(decoded_.images);
+    drop_missing_images(scene_, decoded_.problems, warnings_);
+    build_layers(scene_);
+    build_alpha_heap(scene_);
+    for (Image& image : scene_.images) drop_large_levels(image, decoded_.kept_side);
   }
 
   // The default material is added only if a primitive has no material.
@@ -246,7 +248,8 @@ class Importer {
 
   void build(std::size_t index, const Primitive& primitive, std::span<const Accessor> accessors,
              std::uint32_t material) {
-    auto [mesh, sources] = build_mesh(primitive, accessors, material, scene_.materials, stop_);
+    auto [mesh, sources] =
+        build_mesh(primitive, accessors, material, scene_.materials, scene_.material_layers, stop_);
     if (primitive.deforms()) {
       scene_.shapes[index] = build_shape(primitive, accessors, mesh, sources);
     }
@@ -379,6 +382,7 @@ class Importer {
   ByteBudget budget_;
   ImportTimes times_;
   Warnings warnings_;
+  DecodedImages decoded_;
   Scene scene_;
   std::optional<std::uint32_t> default_material_;
   std::optional<std::uint32_t> origin_;  // parent node of skinned meshes

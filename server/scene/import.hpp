@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <stop_token>
 #include <string_view>
+#include <vector>
 
 #include "scene/image/mipmaps.hpp"
 #include "scene/import_error.hpp"
@@ -13,7 +16,8 @@
 
 namespace heliograph::scene {
 
-/// Seconds per stage of an import. Geometry and images are read in parallel.
+/// Seconds per stage of an import. Geometry and images are read in parallel, unless the scene is
+/// given away without textures first.
 struct ImportTimes {
   double parse = 0.0;  // the file read, its document parsed, buffers and views checked and unpacked
   double check = 0.0;  // every other table of the document
@@ -33,6 +37,16 @@ struct ImportOptions {
   std::stop_token stop;  // asked by all threads: LoadCancelled is thrown soon after a request
   /// Other levels of images are not kept, but for alpha masks.
   KeptTextures kept_textures;
+  /// Textures of materials in place of the file's. @throws NoSuchSlot where the file has no such
+  /// material
+  std::vector<TextureOverride> textures = {};
+  /// Called once, on the loading thread, with the scene without its textures and the bytes of its
+  /// images' files, before these are read and decoded; the whole scene shares its lists. Only where
+  /// no textures are replaced and there are at least `untextured_from` bytes; otherwise, and
+  /// without it, images are decoded beside the geometry, which takes less time for the whole. An
+  /// exception of it cancels the import and is rethrown.
+  std::function<void(std::unique_ptr<Scene>, std::uint64_t image_bytes)> untextured = {};
+  std::uint64_t untextured_from = 0;
 };
 
 /// Reads a .glb or .gltf file with everything it refers to; opens nothing outside `path`'s folder.

@@ -36,6 +36,25 @@ class NoSuchChoice : public ImportError {
   std::vector<std::string> names_;
 };
 
+/// The file has no such material for a TextureOverride, or its slot is unknown.
+class NoSuchSlot : public ImportError {
+ public:
+  /// `number` of the override; `member` of it; `names`: the available ones.
+  NoSuchSlot(std::size_t number, std::string member, std::string requested,
+             std::vector<std::string> names);
+
+  std::size_t number() const { return number_; }
+  const std::string& member() const { return member_; }
+  const std::string& requested() const { return requested_; }
+  const std::vector<std::string>& names() const { return names_; }
+
+ private:
+  std::size_t number_;
+  std::string member_;
+  std::string requested_;
+  std::vector<std::string> names_;
+};
+
 /// Thrown by a load that was asked to stop; not an error.
 struct LoadCancelled {};
 

@@ -8,7 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "scene/import_limits.hpp"
+#include "scene/shared_list.hpp"
 #include "scene/source_file.hpp"
+#include "scene/texture_override.hpp"
 #include "shaders/shared/scene.h"
 
 namespace heliograph::scene {
@@ -167,6 +170,13 @@ struct MaterialLayers {
   float thickness = 0.0f;             // metres in the mesh's space; 0: thin walled
   float attenuation_distance = 0.0f;  // metres; 0: infinite
   glm::vec3 attenuation_color{1.0f};
+  float dispersion = 0.0f;  // 20 / Abbe number
+  float iridescence = 0.0f;
+  float iridescence_ior = 1.3f;
+  float iridescence_thickness_minimum = 100.0f;  // nanometres
+  float iridescence_thickness_maximum = 400.0f;
+  float anisotropy = 0.0f;
+  float anisotropy_rotation = 0.0f;  // radians, from the tangent toward the bitangent
 
   shared::TextureSlot specular_texture = no_texture_slot();
   shared::TextureSlot specular_color_texture = no_texture_slot();
@@ -177,6 +187,9 @@ struct MaterialLayers {
   shared::TextureSlot sheen_roughness_texture = no_texture_slot();
   shared::TextureSlot transmission_texture = no_texture_slot();
   shared::TextureSlot thickness_texture = no_texture_slot();
+  shared::TextureSlot iridescence_texture = no_texture_slot();
+  shared::TextureSlot iridescence_thickness_texture = no_texture_slot();
+  shared::TextureSlot anisotropy_texture = no_texture_slot();
 };
 
 enum class Interpolation { step, linear, cubic_spline };
@@ -198,11 +211,12 @@ struct Clip {
   std::vector<Channel> channels;
 };
 
-/// A whole glTF scene, validated, ready for upload. Immutable once loaded.
+/// A whole glTF scene, validated, ready for upload. Immutable once loaded. A scene that is shown
+/// before its images are decoded shares its lists with the whole one.
 struct Scene {
   std::string name;
-  std::vector<Node> nodes;
-  std::vector<Mesh> meshes;
+  SharedList<Node> nodes;
+  SharedList<Mesh> meshes;
   std::vector<std::string> material_names;
   std::vector<shared::Material> materials;      // at least one
   std::vector<MaterialLayers> material_layers;  // per material, as in the file
@@ -211,16 +225,18 @@ struct Scene {
   std::optional<std::uint32_t> variant;         // selected variant; nullopt: the file's default
   std::vector<std::string> scenes;              // names of the file's scenes; a name may be empty
   std::uint32_t shown_scene = 0;                // index of this scene
+  SceneChoice choice;                           // as the import was asked for it
   std::vector<Image> images;
   std::vector<Texture> textures;
+  std::vector<ReplacedTexture> replaced_textures;  // which the import was told to replace
   std::vector<std::uint8_t> alpha_heap;  // alpha of masked base colors, one byte per texel
   std::vector<Instance> instances;
   std::vector<Camera> cameras;
   std::vector<Light> lights;
-  std::vector<Shape> shapes;
-  std::vector<Skin> skins;
+  SharedList<Shape> shapes;
+  SharedList<Skin> skins;
   std::vector<Deformation> deformations;
-  std::vector<Clip> clips;
+  SharedList<Clip> clips;
   Bounds bounds;  // world space
   std::vector<std::string> warnings;
   std::vector<SourceFile> sources;  // all files read, the scene's own first

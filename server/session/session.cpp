@@ -258,6 +258,7 @@ void Session::discard_requests_of(const std::string& viewer) {
   {
     const std::lock_guard lock(core_.mutex);
     core_.camera.remove_viewer(viewer);
+    if (core_.first_view) core_.first_view->camera.remove_viewer(viewer);
   }
   timeline_.fail_steps_of(
       viewer, error::not_found("session", "the viewer has left the session of the steps"));
@@ -266,7 +267,8 @@ void Session::discard_requests_of(const std::string& viewer) {
 
 bool Session::is_on(const DeviceMigration& device) const {
   const std::lock_guard lock(core_.mutex);
-  return device.is_done(core_.resources) && device.is_done(core_.environment);
+  const auto& shown = core_.shows_first_view() ? core_.first_view->resources : core_.resources;
+  return device.is_done(shown) && device.is_done(core_.environment);
 }
 
 void Session::migrate(DeviceMigration& migration) {
@@ -280,6 +282,9 @@ void Session::migrate(DeviceMigration& migration) {
   };
   const std::lock_guard lock(core_.mutex);
   update(core_);
+  if (core_.first_view && core_.first_view->resources == before.resources) {
+    core_.first_view->resources = resources;
+  }
   core_.timeline.update_pending(update);
   core_.changed(false);
 }

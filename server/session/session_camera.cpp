@@ -42,51 +42,55 @@ Result<protocol::CameraSet> with_field_of_view(protocol::CameraSet request, floa
 
 Result<Camera> SessionCamera::get() const {
   const std::lock_guard lock(core_.mutex);
-  if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
-  return core_.camera.message(core_.rev);
+  if (const Result<void> loaded = core_.require_shown_scene(); !loaded) return loaded.error();
+  return core_.shown_camera().message(core_.rev);
 }
 
 std::uint64_t SessionCamera::moves() const {
   const std::lock_guard lock(core_.mutex);
-  return core_.camera.moves();
+  return core_.shown_camera().moves();
 }
 
 Result<Camera> SessionCamera::set(const protocol::CameraSet& request, const std::string& by) {
   const std::lock_guard lock(core_.mutex);
-  if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
+  if (const Result<void> loaded = core_.require_shown_scene(); !loaded) return loaded.error();
   const auto chosen = with_field_of_view(request, core_.settings.lens.sensor_height);
   if (!chosen) return chosen.error();
-  if (const auto set = core_.camera.set(*chosen, *core_.scene, by); !set) return set.error();
+  const auto set = core_.shown_camera().set(*chosen, *core_.shown_scene(), by);
+  if (!set) return set.error();
   return publish(by);
 }
 
 Result<Camera> SessionCamera::orbit(const protocol::CameraOrbit& request, const std::string& by) {
   const std::lock_guard lock(core_.mutex);
-  if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
-  if (const auto moved = core_.camera.orbit(request, by); !moved) return moved.error();
+  if (const Result<void> loaded = core_.require_shown_scene(); !loaded) return loaded.error();
+  if (const auto moved = core_.shown_camera().orbit(request, by); !moved) return moved.error();
   return publish(by);
 }
 
 Result<Camera> SessionCamera::fit(const protocol::CameraFit& request, const std::string& by) {
   const std::lock_guard lock(core_.mutex);
-  if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
+  if (const Result<void> loaded = core_.require_shown_scene(); !loaded) return loaded.error();
   const float explode = core_.settings.view.explode;
   scene::Bounds bounds;
   if (request.nodes) {
-    if (const auto known = core_.nodes.check(*request.nodes, "nodes"); !known) return known.error();
-    const scene::Pose pose = scene::shown_pose(*core_.scene, nullptr, 0.0, explode);
-    bounds = node_bounds(*core_.scene, pose, core_.nodes, *request.nodes);
+    const auto& scene = core_.shown_scene();
+    const NodeState nodes = core_.shows_first_view() ? NodeState(scene) : core_.nodes;
+    if (const auto known = nodes.check(*request.nodes, "nodes"); !known) return known.error();
+    const scene::Pose pose = scene::shown_pose(*scene, nullptr, 0.0, explode);
+    bounds = node_bounds(*scene, pose, nodes, *request.nodes);
     if (bounds.empty()) return protocol::error::invalid("nodes", "have no meshes to show");
   } else {
-    bounds = scene::exploded_bounds(*core_.scene, explode);
+    bounds = scene::exploded_bounds(*core_.shown_scene(), explode);
   }
-  core_.camera.fit(bounds, core_.aspect());
+  core_.shown_camera().fit(bounds, core_.aspect());
   return publish(by);
 }
 
 Camera SessionCamera::publish(const std::string& by) {
   core_.changed();
-  const protocol::CameraChanged message{.camera = core_.camera.message(core_.rev), .by = by};
+  const protocol::CameraChanged message{.camera = core_.shown_camera().message(core_.rev),
+                                        .by = by};
   core_.notify_others_latest<protocol::notifications::camera_changed>(by, message);
   core_.lead_camera(by);
   return message.camera;

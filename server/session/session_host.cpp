@@ -10,6 +10,7 @@
 #include "jobs/job_queue.hpp"
 #include "session/commands/commands.hpp"
 #include "session/edits/edited_parts.hpp"
+#include "session/edits/texture_edits.hpp"
 
 namespace heliograph::session {
 
@@ -67,6 +68,7 @@ Result<void> may_change(const Session& session, const protocol::MethodDescriptor
 SessionHost::SessionHost(const render::Engines& engines, HostOptions options)
     : options_(std::move(options)),
       catalogue_(options_.scene_roots),
+      images_(options_.image_roots),
       devices_(engines, options_.release_after),
       sessions_(
           options_.limits, options_.session,
@@ -104,6 +106,7 @@ SessionHost::SessionHost(const render::Engines& engines, HostOptions options)
   add_capture_commands(dispatcher_, *this);
   add_frame_commands(dispatcher_, *this);
   add_edit_commands(dispatcher_, *this);
+  add_texture_commands(dispatcher_, *this);
   add_probe_commands(dispatcher_, *this);
   add_job_commands(dispatcher_, *this);
   dispatcher_.set_gate([this](const protocol::MethodDescriptor& method,
@@ -274,19 +277,59 @@ void SessionHost::fail_creation(const std::shared_ptr<Session>& session, const p
 
 void SessionHost::load_scene(std::shared_ptr<Session> session, const protocol::SceneLoad& request,
                              const std::string& by, SceneLoader::Completion done) {
+  const auto textures = overrides_of(request.edits.value_or(protocol::EditDocument()), images_);
+  if (!textures) return done(textures.error());
   if (!request.edits || !request.edits->environment || !request.edits->environment->name) {
-    return loader_.load(std::move(session), request, by, std::move(done));
+    return loader_.load(std::move(session), request, *textures, by, std::move(done));
   }
   const std::string name = *request.edits->environment->name;
   if (const auto known = environments_.find(name); !known) {
     return done(below(known.error(), "edits.environment"));
   }
-  loader_.load(session, request, by, [this, session, name, by, done](auto loaded) {
+  loader_.load(session, request, *textures, by, [this, session, name, by, done](auto loaded) {
     if (!loaded) return done(loaded.error());
     environments_.show(session, name, by, [done, loaded](Result<void> outcome) {
       done(outcome ? loaded : below(outcome.error(), "edits.environment"));
     });
   });
+}
+
+void SessionHost::set_texture(const std::shared_ptr<Session>& session,
+                              const protocol::TextureSet& request, const std::string& by,
+                              protocol::Completion<protocol::TextureState> done) {
+  const auto shown = session->scene().shown();
+  if (!shown) return done(shown.error());
+  const auto slot = check_slot(*shown->scene, request.material, request.slot);
+  if (!slot) return done(slot.error());
+  const auto pending = loader_.pending_textures(*session);
+  const auto textures =
+      with_change(pending ? *pending : overrides_of(*shown->scene), request, images_);
+  if (!textures) return done(textures.error());
+  loader_.load_textures(session, *textures, std::nullopt, by,
+                        [session, request, done = std::move(done)](const auto& loaded) {
+                          if (!loaded) return done(renamed(loaded.error(), "name", "image"));
+                          done(session->scene().texture(request.material, request.slot));
+                        });
+}
+
+void SessionHost::apply_edits(const std::shared_ptr<Session>& session,
+                              const protocol::EditDocument& document, const std::string& by,
+                              std::function<void(Result<void>)> done) {
+  const auto shown = session->scene().shown();
+  if (!shown) return done(shown.error());
+  const auto textures = overrides_of(document, images_);
+  if (!textures) return done(textures.error());
+  const auto fit = check_slots(*shown->scene, document);
+  if (!fit) return done(fit.error());
+  if (*textures == overrides_of(*shown->scene) && !loader_.pending_textures(*session)) {
+    return done(session->scene().apply_edits(document, by));
+  }
+  loader_.load_textures(session, *textures, document, by,
+                        [done = std::move(done)](const auto& loaded) {
+                          if (!loaded)
+                            return done(renamed(loaded.error(), "name", "edits.textures"));
+                          done({});
+                        });
 }
 
 void SessionHost::on_first_frame(std::function<void()> callback) {

@@ -30,6 +30,7 @@ struct HostOptions {
   RegistryLimits limits;
   std::vector<std::filesystem::path> scene_roots;
   std::vector<std::filesystem::path> environment_roots;  // beside them
+  std::vector<std::filesystem::path> image_roots;        // of textures
   std::optional<std::filesystem::path> environment;      // for every scene, instead of its own
   scene::ImportLimits import_limits;
   std::uint64_t scene_cache_bytes = 1ull << 30;
@@ -63,6 +64,8 @@ class SessionHost {
   SessionRegistry& sessions() { return sessions_; }
   const SessionRegistry& sessions() const { return sessions_; }
   EnvironmentLibrary& environments() { return environments_; }
+  /// The images that may take the place of textures; see list_images.
+  const SceneCatalogue& images() const { return images_; }
   SceneExporter& exporter() { return exporter_; }
   /// The small image of a scene; see SceneThumbnails::get.
   protocol::Result<SceneThumbnails::File> scene_thumbnail(const std::string& scene);
@@ -80,6 +83,13 @@ class SessionHost {
   protocol::Result<Resumed> resume(const std::string& viewer, const Origin& from, bool read_only);
   void load_scene(std::shared_ptr<Session> session, const protocol::SceneLoad& request,
                   const std::string& by, SceneLoader::Completion done);
+  /// Changes a texture of the session's scene; `done` is called once, when it is shown.
+  void set_texture(const std::shared_ptr<Session>& session, const protocol::TextureSet& request,
+                   const std::string& by, protocol::Completion<protocol::TextureState> done);
+  /// Puts the document in the place of what was edited, but for its environment, and loads the
+  /// scene again where its textures are others.
+  void apply_edits(const std::shared_ptr<Session>& session, const protocol::EditDocument& document,
+                   const std::string& by, std::function<void(protocol::Result<void>)> done);
   protocol::SceneCancelled cancel_load(const Session& session) { return loader_.cancel(session); }
   CacheTotals scene_cache_totals() const { return loader_.cache_totals(); }
   void on_first_frame(std::function<void()> callback);
@@ -105,6 +115,7 @@ class SessionHost {
 
   const HostOptions options_;
   SceneCatalogue catalogue_;
+  SceneCatalogue images_;
   RenderDevices devices_;
   SessionRegistry sessions_;
   protocol::Dispatcher dispatcher_;

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "session/edits/edited_parts.hpp"
+#include "session/edits/texture_edits.hpp"
 #include "session/library/scene_description.hpp"
 
 namespace heliograph::session {
@@ -27,17 +28,74 @@ Result<void> SessionScene::show(LoadedScene scene, const protocol::EditDocument&
   core_.scene = scene.scene;
   core_.scene_info = describe_scene(scene);
   core_.resources = std::move(scene.resources);
+  ++core_.scene_loads;
   core_.timeline.reset_clock();
-  core_.camera.reset(*core_.scene, core_.aspect());
+  if (core_.first_view) {
+    core_.camera = std::move(core_.first_view->camera);
+    core_.first_view.reset();
+  } else {
+    core_.camera.reset(*core_.scene, core_.aspect());
+  }
   core_.changed();
   core_.notify_others<protocol::notifications::scene_changed>(
       by, {.scene = core_.scene_info, .by = by});
   return {};
 }
 
+Result<void> SessionScene::show_variant(LoadedScene scene,
+                                        const std::optional<protocol::EditDocument>& edits,
+                                        const std::string& by) {
+  const std::lock_guard lock(core_.mutex);
+  if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded;
+  const std::vector<std::uint32_t> selected = core_.nodes.selected();
+  protocol::EditDocument document = edits ? *edits : described_edits();
+  if (!edits) document.environment.reset();
+  if (const auto fits = adopt(scene.scene, document, by); !fits) return fits;
+  core_.nodes.select(selected);
+  core_.scene = scene.scene;
+  core_.scene_info = describe_scene(scene);
+  core_.resources = std::move(scene.resources);
+  if (edits) {
+    edits_changed(by);
+    return {};
+  }
+  core_.changed();
+  core_.notify_others_latest<protocol::notifications::textures_changed>(
+      by, {.rev = core_.rev, .by = by});
+  return {};
+}
+
+void SessionScene::show_first_view(std::shared_ptr<const scene::Scene> scene,
+                                   std::shared_ptr<const render::SceneResources> resources,
+                                   const std::string& by) {
+  const std::lock_guard lock(core_.mutex);
+  FirstView view{std::move(scene), std::move(resources), core_.shown_camera()};
+  view.camera.reset(*view.scene, core_.aspect());
+  core_.first_view = std::move(view);
+  core_.changed();
+  tell_camera(by);
+}
+
+void SessionScene::end_first_view() {
+  const std::lock_guard lock(core_.mutex);
+  if (!core_.first_view) return;
+  core_.camera.take_inputs(core_.first_view->camera);
+  core_.first_view.reset();
+  core_.changed();
+  if (core_.scene) tell_camera({});
+}
+
+/// All viewers: none has asked for it.
+void SessionScene::tell_camera(const std::string& by) {
+  core_.viewers.send_all(protocol::make_notification<protocol::notifications::camera_changed>(
+                             {.camera = core_.shown_camera().message(core_.rev), .by = by}),
+                         protocol::notifications::camera_changed::name);
+}
+
 void SessionScene::unload(const std::string& by) {
   const std::lock_guard lock(core_.mutex);
   if (!core_.scene) return;
+  ++core_.scene_loads;
   const protocol::SceneUnloaded message{.name = core_.scene_info.name, .by = by};
   core_.scene = nullptr;
   core_.scene_info = {};
@@ -124,16 +182,44 @@ Result<protocol::SectionState> SessionScene::set_section(const protocol::Section
 Result<protocol::EditsState> SessionScene::edits() const {
   const std::lock_guard lock(core_.mutex);
   if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
-  protocol::EditsState state{.scene = core_.scene_info.name, .rev = core_.rev};
-  core_.edits.describe(state.edits);
-  state.edits.hidden = core_.nodes.hidden();
-  state.edits.isolated = core_.nodes.isolated();
-  if (!core_.section.get().planes.empty()) state.edits.section = core_.section.get();
-  state.edits.environment =
+  return protocol::EditsState{
+      .scene = core_.scene_info.name, .edits = described_edits(), .rev = core_.rev};
+}
+
+protocol::EditDocument SessionScene::described_edits() const {
+  protocol::EditDocument document;
+  core_.edits.describe(document);
+  describe_textures(*core_.scene, document);
+  document.hidden = core_.nodes.hidden();
+  document.isolated = core_.nodes.isolated();
+  if (!core_.section.get().planes.empty()) document.section = core_.section.get();
+  document.environment =
       protocol::EnvironmentEdit{.name = core_.environment_name,
                                 .rotation = core_.settings.environment.rotation,
                                 .intensity = core_.settings.environment.intensity};
-  return state;
+  return document;
+}
+
+Result<protocol::TextureList> SessionScene::textures() const {
+  const std::lock_guard lock(core_.mutex);
+  if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
+  protocol::TextureList list = list_textures(*core_.scene);
+  list.rev = core_.rev;
+  return list;
+}
+
+Result<protocol::TextureState> SessionScene::texture(const std::string& material,
+                                                     const std::string& slot) const {
+  const std::lock_guard lock(core_.mutex);
+  if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
+  return protocol::TextureState{.texture = describe_texture(*core_.scene, material, slot),
+                                .rev = core_.rev};
+}
+
+Result<SessionScene::Shown> SessionScene::shown() const {
+  const std::lock_guard lock(core_.mutex);
+  if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
+  return Shown{core_.scene_info.name, core_.scene};
 }
 
 Result<SceneExport> SessionScene::exported() const {

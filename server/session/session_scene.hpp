@@ -23,7 +23,19 @@ class SessionScene {
   /// @return an error where the document does not fit; the scene of before stays
   protocol::Result<void> show(LoadedScene scene, const protocol::EditDocument& edits,
                               const std::string& by);
+  /// The same scene with other textures: camera, time, selection and what was edited stay, or the
+  /// changes of `edits` take its place.
+  /// @return an error where the document does not fit, or no scene is shown any more
+  protocol::Result<void> show_variant(LoadedScene scene,
+                                      const std::optional<protocol::EditDocument>& edits,
+                                      const std::string& by);
   void unload(const std::string& by);
+  /// Shows a scene without its textures to the viewers until show() gives the whole one, which
+  /// takes the camera over, or end_first_view() brings the session's own back.
+  void show_first_view(std::shared_ptr<const scene::Scene> scene,
+                       std::shared_ptr<const render::SceneResources> resources,
+                       const std::string& by);
+  void end_first_view();
 
   protocol::Result<protocol::LightList> lights() const;
   protocol::Result<protocol::LightState> patch_light(const protocol::LightsPatch& request,
@@ -35,6 +47,15 @@ class SessionScene {
   protocol::Result<protocol::MaterialList> materials() const;
   protocol::Result<protocol::MaterialState> patch_material(const protocol::MaterialsPatch& request,
                                                            const std::string& by);
+  protocol::Result<protocol::TextureList> textures() const;
+  protocol::Result<protocol::TextureState> texture(const std::string& material,
+                                                   const std::string& slot) const;
+  /// What loads the scene that is shown, as it was asked for.
+  struct Shown {
+    std::string name;
+    std::shared_ptr<const scene::Scene> scene;
+  };
+  protocol::Result<Shown> shown() const;
   protocol::Result<protocol::SectionState> section() const;
   protocol::Result<protocol::SectionState> set_section(const protocol::Section& section,
                                                        const std::string& by);
@@ -52,10 +73,12 @@ class SessionScene {
 
  private:
   protocol::SectionState section_state() const;
+  protocol::EditDocument described_edits() const;
   /// Takes the document's place for all that was changed before; `scene` is to be shown.
   protocol::Result<void> adopt(const std::shared_ptr<const scene::Scene>& scene,
                                const protocol::EditDocument& document, const std::string& by);
   void edits_changed(const std::string& by);
+  void tell_camera(const std::string& by);
 
   SessionCore& core_;
 };

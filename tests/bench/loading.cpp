@@ -2,8 +2,9 @@
 // includes the creation of pipelines. "processor_seconds" is CPU time of all threads, which is
 // robust on a busy machine. Memory peaks are relative to the start; "decoded_bytes" are geometry,
 // images and mip levels, once each; "kept" is what is resident once the temporary memory of loading
-// has been given back. With --cancel, loads are cancelled so many seconds after their start, and
-// "late" is how long they go on.
+// has been given back. With --two-steps the scene is shown without its textures first, as viewers
+// of the server see it: "file_to_untextured_frame" is the time up to that frame. With --cancel,
+// loads are cancelled so many seconds after their start, and "late" is how long they go on.
 #include <malloc.h>
 
 #include <CLI/CLI.hpp>
@@ -17,6 +18,7 @@
 #include <nlohmann/json.hpp>
 #include <stop_token>
 #include <thread>
+#include <utility>
 
 #include "render/api/kept_textures.hpp"
 #include "render/api/renderer.hpp"
@@ -33,6 +35,7 @@ struct Options {
   std::string device;
   int repeats = 3;
   std::vector<double> cancel;
+  bool two_steps = false;
   double most_peak = 0.0;
   double most_late = 0.0;
   std::uint32_t width = 640;
@@ -101,6 +104,20 @@ class StageTimes {
   std::map<std::string, double> seconds_;
 };
 
+void render_frame(render::Engine& engine,
+                  const std::shared_ptr<const render::SceneResources>& resources,
+                  const Options& options) {
+  const scene::Scene& scene = *render::scene_of(*resources);
+  render::Renderer renderer(engine);
+  renderer.set_scene(resources);
+  renderer.set_size(options.width, options.height);
+  const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
+  renderer.set_camera(scene.cameras.empty()
+                          ? scene::fit_camera(scene.bounds, scene::Camera().vertical_fov, aspect)
+                          : scene.cameras.front());
+  renderer.render();
+}
+
 nlohmann::json load(render::Engine& engine, const std::filesystem::path& path,
                     const std::shared_ptr<const scene::Environment>& environment,
                     const Options& options) {
@@ -108,28 +125,32 @@ nlohmann::json load(render::Engine& engine, const std::filesystem::path& path,
   const Clock::time_point start = Clock::now();
   const std::clock_t spent_before = std::clock();
   scene::ImportTimes times;
-  auto whole = std::make_unique<scene::Scene>(scene::import_gltf(
-      path, {}, {.times = &times, .kept_textures = render::kept_textures(engine)}));
+  scene::ImportOptions import_options{.times = &times,
+                                      .kept_textures = render::kept_textures(engine)};
+  std::shared_ptr<const render::SceneResources> first;
+  double untextured_frame = 0.0;
+  if (options.two_steps) {
+    import_options.untextured = [&](std::unique_ptr<scene::Scene> scene, std::uint64_t) {
+      first = engine.upload(std::shared_ptr<const scene::Scene>(std::move(scene)), environment);
+      render_frame(engine, first, options);
+      untextured_frame = seconds_since(start);
+    };
+  }
+  auto whole = std::make_unique<scene::Scene>(scene::import_gltf(path, {}, import_options));
   const Clock::time_point imported = Clock::now();
   const std::uint64_t decoded = whole->bytes();
   const std::uint64_t import_peak = peak_bytes() - before;
   StageTimes stages;
   const auto resources = engine.upload_and_free_pixels(
-      std::move(whole), environment, [&](std::string_view stage, float) { stages.enter(stage); });
+      std::move(whole), environment, [&](std::string_view stage, float) { stages.enter(stage); },
+      std::exchange(first, nullptr));
   stages.leave();
   const std::shared_ptr<const scene::Scene>& scene = render::scene_of(*resources);
   const double upload = seconds_since(imported);
   const Clock::time_point uploaded = Clock::now();
   const std::uint64_t loading_peak = peak_bytes() - before;
   const std::uint64_t kept = restart_peak() - before;
-  render::Renderer renderer(engine);
-  renderer.set_scene(resources);
-  renderer.set_size(options.width, options.height);
-  const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
-  renderer.set_camera(scene->cameras.empty()
-                          ? scene::fit_camera(scene->bounds, scene::Camera().vertical_fov, aspect)
-                          : scene->cameras.front());
-  renderer.render();
+  render_frame(engine, resources, options);
   const double frame = seconds_since(uploaded);
   const double total = seconds_since(start);
   const auto spent = static_cast<double>(std::clock() - spent_before) / CLOCKS_PER_SEC;
@@ -145,6 +166,7 @@ nlohmann::json load(render::Engine& engine, const std::filesystem::path& path,
           {"upload_stages", stages.seconds()},
           {"upload_and_bvh", upload},
           {"first_frame", frame},
+          {"file_to_untextured_frame", untextured_frame},
           {"file_to_first_frame", total},
           {"processor_seconds", spent},
           {"tangents_of_one_thread", time_tangents(*scene)},
@@ -229,6 +251,8 @@ int main(int count, char** arguments) {
   app.add_option("--repeats", options.repeats, "Number of loads of each scene");
   app.add_option("--width", options.width, "Frame width, pixels");
   app.add_option("--height", options.height, "Frame height, pixels");
+  app.add_flag("--two-steps", options.two_steps,
+               "Render the scene without its textures before these are decoded");
   app.add_option("--cancel", options.cancel, "Cancel loads after so many seconds, one each");
   app.add_option("--most-peak", options.most_peak,
                  "Fail where the peak is more times what stays in memory");

@@ -350,6 +350,15 @@ class Frame(_Group):
         return self._call("frame.inspect", _given({"x": x, "y": y}))
 
 
+class Images(_Group):
+    def list(self) -> Dict[str, Any]:
+        """Lists the images that were uploaded, for textures.set.
+
+        Returns: images.
+        """
+        return self._call("images.list", {})
+
+
 class Job(_Group):
     def create(
             self,
@@ -639,8 +648,8 @@ class Scene(_Group):
             edits: Dict[str, Any] = _UNSET,
             scene: str = _UNSET,
             variant: str = _UNSET) -> Dict[str, Any]:
-        """Loads a scene and shows it; scene.progress reports the progress. On failure the
-        current scene stays.
+        """Loads a scene and shows it; scene.progress reports the progress. Viewers see scenes
+        with large images without their textures first. On failure the current scene stays.
 
         name: A name from scene.list.
         edits: A document that edits.get returned, applied as by edits.apply.
@@ -958,6 +967,36 @@ class Stream(_Group):
             "frame_seq": frame_seq, "decode_us": decode_us, "present_us": present_us}))
 
 
+class Textures(_Group):
+    def list(self) -> Dict[str, Any]:
+        """Lists the textures of the scene's materials, and what takes their place.
+
+        Returns: rev, slots, textures.
+        """
+        return self._call("textures.list", {})
+
+    def set(
+            self,
+            *,
+            material: str,
+            slot: str,
+            image: Optional[str] = _UNSET,
+            removed: bool = _UNSET) -> Dict[str, Any]:
+        """Puts an uploaded image in the place of a material's texture, removes the texture, or
+        restores that of the file. Answers when the scene is loaded with it; until then it is
+        shown as before.
+
+        material: A name from materials.list.
+        slot: A slot of textures.list.
+        image: A name from images.list; null: the texture of the scene file.
+        removed: Instead of an image: no texture.
+
+        Returns: rev, texture.
+        """
+        return self._call("textures.set", _given({
+            "material": material, "slot": slot, "image": image, "removed": removed}))
+
+
 class Viewer(_Group):
     def follow(self, *, viewer: str = _UNSET) -> Dict[str, Any]:
         """Gives this viewer, which has a camera of its own, the camera of another viewer of the
@@ -981,6 +1020,7 @@ class Methods:
         self.edits = Edits(call)
         self.environment = Environment(call)
         self.frame = Frame(call)
+        self.images = Images(call)
         self.job = Job(call)
         self.lights = Lights(call)
         self.materials = Materials(call)
@@ -996,6 +1036,7 @@ class Methods:
         self.settings = Settings(call)
         self.stats = Stats(call)
         self.stream = Stream(call)
+        self.textures = Textures(call)
         self.viewer = Viewer(call)
 
     def hello(

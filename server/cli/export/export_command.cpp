@@ -43,6 +43,8 @@ std::vector<std::string> write_export(const ExportOptions& options,
                                       const protocol::EditDocument& document) {
   scene::ImportOptions choice;
   choice.choice.variant = options.variant;
+  choice.textures =
+      edited_textures(document, image_folders(options.images, options.edits, options.scene));
   const auto scene = std::make_shared<const scene::Scene>(
       scene::import_gltf(options.scene, options.limits, choice));
   const session::SceneExport exported = edited(scene, document);

@@ -18,10 +18,12 @@ CLI::App* add_export(CLI::App& app, ExportOptions& options) {
       ->type_name("FILE")
       ->required();
   command
-      ->add_option("--edits", options.edits,
-                   "File with changes of lights, materials and visibility: the one that the page "
-                   "saves, or the document of edits.get")
+      ->add_option(
+          "--edits", options.edits,
+          "File with changes of lights, materials, textures and visibility: the one that the page "
+          "saves, or the document of edits.get")
       ->type_name("FILE");
+  add_images_option(*command, options.images);
   command
       ->add_option("--variant", options.variant,
                    "Material variant that becomes the default [the file's]")

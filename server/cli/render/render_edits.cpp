@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "protocol/json/codec.hpp"
+#include "session/edits/texture_edits.hpp"
 #include "session/library/scene_catalogue.hpp"
 #include "session/nodes/node_state.hpp"
 
@@ -53,6 +54,27 @@ std::filesystem::path edited_environment(const std::string& name,
   if (name == "studio") return {};
   throw std::runtime_error("edits.environment.name: there is no " + name +
                            ".hdr or .exr beside the scene; --environment names a file");
+}
+
+std::vector<std::filesystem::path> image_folders(const std::string& images,
+                                                 const std::string& edits,
+                                                 const std::filesystem::path& scene) {
+  if (!images.empty()) return {images};
+  std::vector<std::filesystem::path> folders;
+  for (const std::filesystem::path& file : {std::filesystem::path(edits), scene}) {
+    if (!file.empty()) folders.push_back(std::filesystem::absolute(file).parent_path());
+  }
+  return folders;
+}
+
+std::vector<scene::TextureOverride> edited_textures(
+    const protocol::EditDocument& document, const std::vector<std::filesystem::path>& folders) {
+  if (document.textures.empty()) return {};
+  auto textures = session::overrides_of(document, session::SceneCatalogue(folders));
+  if (!textures) {
+    throw std::runtime_error(textures.error().message + "; --images names the folder of images");
+  }
+  return *std::move(textures);
 }
 
 RenderEdits::RenderEdits(const std::shared_ptr<const scene::Scene>& scene,

@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "protocol/messages/edit_messages.hpp"
+#include "protocol/messages/render_messages.hpp"
 #include "render/api/renderer.hpp"
 #include "scene/scene.hpp"
+#include "scene/texture_override.hpp"
 #include "session/edits/scene_edits.hpp"
 #include "session/edits/section_planes.hpp"
 
@@ -25,6 +27,17 @@ protocol::CameraPath read_path(const std::string& file);
 /// @throws std::runtime_error
 std::filesystem::path edited_environment(const std::string& name,
                                          const std::filesystem::path& scene);
+
+/// The folders where the images are that a document puts in the place of textures: that of
+/// --images, or else those of --edits and of the scene.
+std::vector<std::filesystem::path> image_folders(const std::string& images,
+                                                 const std::string& edits,
+                                                 const std::filesystem::path& scene);
+
+/// The images of a document in the place of textures, among those in the folders and below them.
+/// @throws std::runtime_error
+std::vector<scene::TextureOverride> edited_textures(
+    const protocol::EditDocument& document, const std::vector<std::filesystem::path>& folders);
 
 /// What a document changes in a scene.
 class RenderEdits {

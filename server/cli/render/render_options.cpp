@@ -156,10 +156,12 @@ CLI::App* add_render(CLI::App& app, RenderOptions& options) {
       ->check(one_of({"png", "jpg", "webp", "exr", "npy", "mp4", "webm", "animated_webp"}));
   add_view_options(*command, options);
   command
-      ->add_option("--edits", options.edits,
-                   "Changes of lights, materials, visibility and environment to apply: the file "
-                   "that the page saves, or the document of edits.get")
+      ->add_option(
+          "--edits", options.edits,
+          "Changes of lights, materials, textures, visibility and environment to apply: the file "
+          "that the page saves, or the document of edits.get")
       ->type_name("FILE");
+  add_images_option(*command, options.images);
   command->add_option("--buffer", request.buffer, "Buffer to write")->capture_default_str();
   add_limit_options(*command, options.limits);
   command->add_flag("--timings", options.timings,

@@ -132,7 +132,7 @@ const scene::Clip* choose_clip(const scene::Scene& scene, const protocol::Render
   if (const scene::Clip* clip = scene::find_clip(scene, request.clip)) return clip;
   if (scene.clips.empty()) throw std::runtime_error("--clip: the scene has no clips");
   throw std::runtime_error("--clip: the scene has no clip " + request.clip +
-                           protocol::suggestion(request.clip, names_of(scene.clips)));
+                           protocol::suggestion(request.clip, names_of<scene::Clip>(scene.clips)));
 }
 
 /// The camera at a time of the clip, if the clip moves it.

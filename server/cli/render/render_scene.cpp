@@ -93,9 +93,19 @@ std::string named_environment(const protocol::RenderRequest& request) {
   return name ? "environment of the edits: " + *name : "";
 }
 
-bool shows(const SceneInUse& scene, const protocol::RenderRequest& request) {
+std::vector<scene::TextureOverride> textures_of(const RenderContext& context,
+                                                const protocol::RenderRequest& request) {
+  if (!request.edits) return {};
+  const RenderOptions& options = context.options;
+  return edited_textures(*request.edits,
+                         image_folders(options.images, options.edits, request.scene));
+}
+
+bool shows(const SceneInUse& scene, const protocol::RenderRequest& request,
+           const std::vector<scene::TextureOverride>& textures) {
   return scene.resources && scene.file == request.scene &&
-         scene.environment == named_environment(request) && scene.variant == request.variant;
+         scene.environment == named_environment(request) && scene.variant == request.variant &&
+         scene.textures == textures;
 }
 
 /// A file and its images: one, or all of a camera.
@@ -269,20 +279,23 @@ void print_timings(RenderContext& context, const RenderTask& task, render::Rende
 }
 
 /// The scene on the device, and the scene itself if it had to be read.
-void load(RenderContext& context, const RenderTask& task, std::unique_ptr<scene::Scene> scene) {
+void load(RenderContext& context, const RenderTask& task, std::unique_ptr<scene::Scene> scene,
+          std::vector<scene::TextureOverride> textures) {
   auto environment = environment_of(context, task);
   set_up_device(context);
   context.scene = {.file = task.request.scene,
                    .environment = named_environment(task.request),
                    .variant = task.request.variant,
+                   .textures = std::move(textures),
                    .resources = context.engine->upload_and_free_pixels(std::move(scene),
                                                                        std::move(environment))};
 }
 
-std::unique_ptr<scene::Scene> read_scene(const RenderContext& context, const RenderTask& task) {
-  return std::make_unique<scene::Scene>(
-      scene::import_gltf(task.request.scene, context.options.limits,
-                         {.choice = {.scene = {}, .variant = task.request.variant}}));
+std::unique_ptr<scene::Scene> read_scene(const RenderContext& context, const RenderTask& task,
+                                         const std::vector<scene::TextureOverride>& textures) {
+  return std::make_unique<scene::Scene>(scene::import_gltf(
+      task.request.scene, context.options.limits,
+      {.choice = {.scene = {}, .variant = task.request.variant}, .textures = textures}));
 }
 
 void prepare(RenderContext& context, const RenderTask& task, Renderers& renderers,
@@ -351,9 +364,10 @@ std::size_t expected_images(const RenderTask& task) {
 void render_task(RenderContext& context, const RenderTask& task) {
   const protocol::RenderRequest& request = task.request;
   std::unique_ptr<scene::Scene> read;
-  if (!shows(context.scene, request)) {
+  std::vector<scene::TextureOverride> textures = textures_of(context, request);
+  if (!shows(context.scene, request, textures)) {
     context.scene = {};
-    read = read_scene(context, task);
+    read = read_scene(context, task, textures);
   }
   const scene::Scene& scene = read ? *read : *render::scene_of(*context.scene.resources);
   const scene::Bounds shown = scene::exploded_bounds(scene, task.settings.view.explode);
@@ -370,7 +384,7 @@ void render_task(RenderContext& context, const RenderTask& task) {
       context.report.keep(file.path, file.shots.size());
       continue;
     }
-    if (read) load(context, task, std::move(read));
+    if (read) load(context, task, std::move(read), std::move(textures));
     if (!renderers) renderers = take_renderers(context, task, file.shots.front());
     render_file(context, *renderers, task, file);
   }

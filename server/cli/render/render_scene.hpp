@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "cli/render/render_report.hpp"
 #include "cli/render/render_task.hpp"
@@ -22,6 +23,7 @@ struct SceneInUse {
   std::filesystem::path file;
   std::string environment;
   std::string variant;
+  std::vector<scene::TextureOverride> textures;
   std::shared_ptr<const render::SceneResources> resources;
   /// For the next entry that differs from `rendered` in its views alone, in the same `format`.
   std::shared_ptr<Renderers> renderers;

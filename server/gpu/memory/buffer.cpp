@@ -60,9 +60,19 @@ Buffer::Buffer(const Device& device, std::string name, VkDeviceSize size, VkBuff
   }
 }
 
+Buffer::Buffer(std::shared_ptr<const Buffer> shared)
+    : device_(shared->device_),
+      name_(shared->name_),
+      handle_(shared->handle_),
+      block_(shared->block_),
+      shared_(std::move(shared)),
+      size_(shared_->size_),
+      mapped_(shared_->mapped_) {}
+
 Buffer::~Buffer() {
   if (!device_) return;
   vkDestroyBufferView(device_->handle(), view_, nullptr);
+  if (shared_) return;
   vkDestroyBuffer(device_->handle(), handle_, nullptr);
   vkFreeMemory(device_->handle(), memory_, nullptr);
 }
@@ -73,6 +83,7 @@ void Buffer::swap(Buffer& other) noexcept {
   std::swap(handle_, other.handle_);
   std::swap(memory_, other.memory_);
   std::swap(block_, other.block_);
+  std::swap(shared_, other.shared_);
   std::swap(view_, other.view_);
   std::swap(size_, other.size_);
   std::swap(mapped_, other.mapped_);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -23,6 +24,8 @@ class Buffer {
   /// `place`: in a block, mapped, whatever `memory` says.
   Buffer(const Device& device, std::string name, VkDeviceSize size, VkBufferUsageFlags usage,
          Memory memory, MemoryPlace place = {});
+  /// The same buffer once more, which stays as long as either of both.
+  explicit Buffer(std::shared_ptr<const Buffer> shared);
   ~Buffer();
   Buffer(Buffer&& other) noexcept { swap(other); }
   Buffer& operator=(Buffer&& other) noexcept {
@@ -39,7 +42,7 @@ class Buffer {
   const std::string& name() const { return name_; }
   /// The block in which the buffer lies, or null, and bytes of memory that it has for itself.
   const MemoryBlock* block() const { return block_.get(); }
-  VkDeviceSize own_bytes() const { return block_ ? 0 : size_; }
+  VkDeviceSize own_bytes() const { return block_ || shared_ ? 0 : size_; }
   explicit operator bool() const { return handle_ != VK_NULL_HANDLE; }
 
   /// The buffer's bytes, or null when the host cannot reach them.
@@ -59,6 +62,7 @@ class Buffer {
   VkBuffer handle_ = VK_NULL_HANDLE;
   VkDeviceMemory memory_ = VK_NULL_HANDLE;  // its own
   std::shared_ptr<const MemoryBlock> block_;
+  std::shared_ptr<const Buffer> shared_;  // whose handle this is; null: its own
   mutable VkBufferView view_ = VK_NULL_HANDLE;
   VkDeviceSize size_ = 0;
   std::byte* mapped_ = nullptr;

@@ -19,6 +19,7 @@ namespace {
 constexpr std::string_view sessions_prefix = "/api/v1/sessions/";
 constexpr std::string_view scenes_prefix = "/api/v1/scenes/";
 constexpr std::string_view environments_prefix = "/api/v1/environments/";
+constexpr std::string_view images_prefix = "/api/v1/images/";
 constexpr std::string_view exported_suffix = "/scene.glb";
 constexpr std::string_view environment_suffix = "/thumbnail.png";
 constexpr std::string_view scene_suffix = "/thumbnail.jpg";
@@ -147,7 +148,8 @@ HttpResponse error_response(const protocol::Error& error) {
 std::optional<UploadAddress> upload_address(std::string_view path) {
   for (const auto& [prefix, kind] :
        {std::pair(scenes_prefix, session::UploadKind::scene),
-        std::pair(environments_prefix, session::UploadKind::environment)}) {
+        std::pair(environments_prefix, session::UploadKind::environment),
+        std::pair(images_prefix, session::UploadKind::image)}) {
     if (path.starts_with(prefix) && path.size() > prefix.size()) {
       return UploadAddress{kind, path.substr(prefix.size())};
     }
@@ -239,6 +241,7 @@ void Router::handle(const HttpRequest& request, const Pending& pending, Reply re
 }
 
 std::optional<HttpResponse> Router::name_conflict(const UploadAddress& upload) const {
+  if (upload.kind == session::UploadKind::image) return std::nullopt;  // all were uploaded
   const std::string name(upload.name);
   const bool scene = upload.kind == session::UploadKind::scene;
   const auto found = scene ? host_.catalogue().find(name) : host_.environments().find(name);

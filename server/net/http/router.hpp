@@ -87,7 +87,7 @@ class Router {
   std::atomic<bool> draining_ = false;
 };
 
-/// Of "/api/v1/scenes/NAME" and "/api/v1/environments/NAME", where uploads go.
+/// Of "/api/v1/scenes/NAME" and the same of environments and images, where uploads go.
 std::optional<UploadAddress> upload_address(std::string_view path);
 HttpResponse error_response(const protocol::Error& error);
 /// The response while the server shuts down: come back in a while.

@@ -19,7 +19,7 @@ std::optional<HttpResponse> upload_refusal(const ServerContext& context, const H
   if (!address) {
     return text_response(404,
                          "Scenes go to /api/v1/scenes/NAME, environments to "
-                         "/api/v1/environments/NAME.");
+                         "/api/v1/environments/NAME, images to /api/v1/images/NAME.");
   }
   if (!length) return text_response(411, "An upload needs a Content-Length.");
   if (*length == 0) return text_response(400, "The upload is empty.");

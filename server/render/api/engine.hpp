@@ -89,10 +89,12 @@ class Engine {
       std::shared_ptr<const scene::Scene> scene,
       std::shared_ptr<const scene::Environment> environment, const UploadProgress& progress = {});
   /// The same of a scene that is given away: the pixels of its images that came from files are
-  /// freed as soon as they are on the device, so that memory never holds them twice.
+  /// freed as soon as they are on the device, so that memory never holds them twice. `first`: the
+  /// same scene without its textures, which shares its geometry and acceleration structure; null,
+  /// or on a device that was lost meanwhile: nothing is shared.
   std::shared_ptr<const SceneResources> upload_and_free_pixels(
       std::unique_ptr<scene::Scene> scene, std::shared_ptr<const scene::Environment> environment,
-      const UploadProgress& progress = {});
+      const UploadProgress& progress = {}, std::shared_ptr<const SceneResources> first = nullptr);
 
   /// Nothing on black: what is rendered before there is a scene. One for all renderers.
   std::shared_ptr<const SceneResources> empty_scene();
@@ -119,7 +121,8 @@ class Engine {
   std::shared_ptr<const SceneResources> upload_images(
       std::shared_ptr<const scene::Scene> scene,
       std::shared_ptr<const scene::Environment> environment, const UploadProgress& progress,
-      const std::function<void(std::size_t image)>& image_done);
+      const std::function<void(std::size_t image)>& image_done,
+      std::shared_ptr<const SceneResources> first = nullptr);
 
   const EngineOptions options_;
   mutable std::mutex mutex_;  // guards what follows

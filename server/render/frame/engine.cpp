@@ -154,28 +154,32 @@ std::shared_ptr<const SceneResources> Engine::upload(
 
 std::shared_ptr<const SceneResources> Engine::upload_and_free_pixels(
     std::unique_ptr<scene::Scene> scene, std::shared_ptr<const scene::Environment> environment,
-    const UploadProgress& progress) {
+    const UploadProgress& progress, std::shared_ptr<const SceneResources> first) {
   const std::shared_ptr<scene::Scene> own = std::move(scene);
-  return upload_images(own, std::move(environment), progress,
-                       [&images = own->images](std::size_t i) {
-                         if (images[i].file) std::vector<std::uint8_t>().swap(images[i].pixels);
-                       });
+  return upload_images(
+      own, std::move(environment), progress,
+      [&images = own->images](std::size_t i) {
+        if (images[i].file) std::vector<std::uint8_t>().swap(images[i].pixels);
+      },
+      std::move(first));
 }
 
 std::shared_ptr<const SceneResources> Engine::upload_images(
     std::shared_ptr<const scene::Scene> scene,
     std::shared_ptr<const scene::Environment> environment, const UploadProgress& progress,
-    const std::function<void(std::size_t image)>& image_done) {
+    const std::function<void(std::size_t image)>& image_done,
+    std::shared_ptr<const SceneResources> first) {
   const auto report = [&](std::string_view stage, float fraction) {
     if (progress) progress(stage, fraction);
   };
   report("environment", 0.0f);
   const std::shared_ptr<Parts> parts = current();
   auto around = parts->environments.get(std::move(environment));
+  if (first && &first->environment->device() != &parts->device) first = nullptr;
   return with_device(parts,
                      std::make_shared<const SceneResources>(
                          parts->device, parts->programs, parts->host_kernels, std::move(scene),
-                         std::move(around), *parts->tracer, report, image_done));
+                         std::move(around), *parts->tracer, report, image_done, first));
 }
 
 std::shared_ptr<const SceneResources> Engine::empty_scene() {

@@ -15,6 +15,7 @@
 #include "scene/gltf/materials/layer_table.hpp"
 #include "scene/image/mipmaps.hpp"
 #include "scene/import.hpp"
+#include "tracing/bvh/alpha_mask.hpp"
 #include "tracing/stoppable_tracer.hpp"
 
 namespace heliograph::render {
@@ -139,7 +140,8 @@ SceneResources::SceneResources(const gpu::Device& device, const Programs& progra
                                bool host_kernels, std::shared_ptr<const scene::Scene> source,
                                std::shared_ptr<const LitEnvironment> around,
                                const tracing::RayTracer& tracer, const UploadProgress& progress,
-                               const ImageDone& image_done)
+                               const ImageDone& image_done,
+                               const std::shared_ptr<const SceneResources>& first)
     : scene(std::move(source)),
       environment(std::move(around)),
       emission_means(*scene),
@@ -148,11 +150,13 @@ SceneResources::SceneResources(const gpu::Device& device, const Programs& progra
       white_(constant_texture(device, "white", {255, 255, 255, 255})),
       flat_normal_(constant_texture(device, "flat normal", {128, 128, 255, 255})) {
   progress("tables", 0.1f);
-  upload_tables(device, host_kernels);
+  upload_tables(device, host_kernels, first);
   make_samplers();
   // Beside the textures, which one thread copies.
   std::stop_source stop;
   auto structure = std::async(std::launch::async, [&] {
+    const bool shared = first && tracing::cover_alike(first->scene->materials, scene->materials);
+    if (shared) return first->rest_structure;
     return build_structure(tracer, *scene, rest_tables, stop.get_token());
   });
   // Destroyed before the future, which waits for its thread.
@@ -188,7 +192,8 @@ std::uint64_t SceneResources::bytes() const {
   return sum;
 }
 
-void SceneResources::upload_tables(const gpu::Device& device, bool host_kernels) {
+void SceneResources::upload_tables(const gpu::Device& device, bool host_kernels,
+                                   const std::shared_ptr<const SceneResources>& first) {
   const std::uint64_t vertex_bytes = bytes_of_meshes(scene->meshes, &scene::Mesh::vertices);
   const std::uint64_t index_bytes = bytes_of_meshes(scene->meshes, &scene::Mesh::indices);
   for_kernels_only = device.is_cpu() && host_kernels &&
@@ -211,27 +216,44 @@ void SceneResources::upload_tables(const gpu::Device& device, bool host_kernels)
   std::vector<shared::Light> lights;
   for (const scene::Light& light : scene->lights) lights.push_back(light.device);
 
-  rest_tables.vertices = upload_of_meshes(device, "vertices", scene->meshes, &scene::Mesh::vertices,
-                                          VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
-  rest_tables.indices = upload_of_meshes(device, "indices", scene->meshes, &scene::Mesh::indices,
-                                         VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
-  rest_tables.meshes = upload(device, "meshes", meshes_);
-  rest_tables.instances = upload(device, "instances", instances_);
+  first ? share_geometry(first) : upload_geometry(device);
   rest_tables.materials = upload(device, "materials", scene->materials);
   const auto& materials = scene->materials;
   const bool blends =
       std::any_of(materials.begin(), materials.end(), [](const shared::Material& material) {
         return (material.flags & shared::material_alpha_blend) != 0;
       });
+  const bool transmits = std::ranges::any_of(
+      scene->layers, [](const shared::MaterialLayer& layer) { return layer.transmission > 0.0f; });
   features = light_features(lights) | (scene->deformations.empty() ? 0u : shared::scene_deforms) |
              (blends ? shared::scene_blends : 0u) |
-             (scene->layers.size() > 1 ? shared::scene_layers : 0u);
+             (scene->layers.size() > 1 ? shared::scene_layers : 0u) |
+             (transmits ? shared::scene_transmits : 0u);
   layers = upload(device, "material layers",
                   scene->layers.empty() ? std::vector{scene::plain_layer()} : scene->layers);
   rest_tables.lights = make_light_table(device, lights);
   write_lights(rest_tables.lights, lights, scene->bounds);
   rest_tables.alpha_heap =
       upload(device, "alpha masks", scene->alpha_heap, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+}
+
+void SceneResources::upload_geometry(const gpu::Device& device) {
+  rest_tables.vertices = upload_of_meshes(device, "vertices", scene->meshes, &scene::Mesh::vertices,
+                                          VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+  rest_tables.indices = upload_of_meshes(device, "indices", scene->meshes, &scene::Mesh::indices,
+                                         VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+  rest_tables.meshes = upload(device, "meshes", meshes_);
+  rest_tables.instances = upload(device, "instances", instances_);
+}
+
+void SceneResources::share_geometry(const std::shared_ptr<const SceneResources>& first) {
+  using Tables = tracing::SceneBuffers;
+  for (gpu::Buffer Tables::*const table :
+       {&Tables::vertices, &Tables::indices, &Tables::meshes, &Tables::instances}) {
+    // `first` stays, and with it what its structure refers to.
+    const std::shared_ptr<const gpu::Buffer> shared(first, &(first->rest_tables.*table));
+    rest_tables.*table = gpu::Buffer(shared);
+  }
 }
 
 void SceneResources::upload_textures(const UploadProgress& progress, const ImageDone& image_done) {

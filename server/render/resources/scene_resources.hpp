@@ -44,11 +44,14 @@ using ImageDone = std::function<void(std::size_t image)>;
 class SceneResources {
  public:
   /// `host_kernels`: whether passes that have one run theirs, so that no shader reads the scene.
+  /// `first`: of the same scene without its textures, on the same device: its tables of geometry
+  /// are shared, as is its acceleration structure where rays meet the same. Null: there is none.
   SceneResources(const gpu::Device& device, const Programs& programs, bool host_kernels,
                  std::shared_ptr<const scene::Scene> scene,
                  std::shared_ptr<const LitEnvironment> environment,
                  const tracing::RayTracer& tracer, const UploadProgress& progress,
-                 const ImageDone& image_done);
+                 const ImageDone& image_done,
+                 const std::shared_ptr<const SceneResources>& first = nullptr);
 
   /// Memory of tables, images and the acceleration structure.
   std::uint64_t bytes() const;
@@ -79,7 +82,10 @@ class SceneResources {
   kernels::MaterialTable make_host_materials(const MaterialTables& tables) const;
 
  private:
-  void upload_tables(const gpu::Device& device, bool host_kernels);
+  void upload_tables(const gpu::Device& device, bool host_kernels,
+                     const std::shared_ptr<const SceneResources>& first);
+  void upload_geometry(const gpu::Device& device);
+  void share_geometry(const std::shared_ptr<const SceneResources>& first);
   void upload_textures(const UploadProgress& progress, const ImageDone& image_done);
   void upload_emissive_triangles();
   void make_samplers();

@@ -19,6 +19,7 @@ void add_stats_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_capture_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_frame_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_edit_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
+void add_texture_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_node_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_probe_commands(protocol::Dispatcher& dispatcher, SessionHost& host);
 void add_section_commands(protocol::Dispatcher& dispatcher, SessionHost& host);

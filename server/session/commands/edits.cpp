@@ -60,22 +60,20 @@ void set_environment(SessionHost& host, const std::shared_ptr<Session>& session,
 void apply_edits(SessionHost& host, const std::shared_ptr<Session>& session,
                  const protocol::EditDocument& document, const std::string& by,
                  protocol::Completion<protocol::EditsState> done) {
-  const auto& environment = document.environment;
-  if (!environment || !environment->name) {
-    const auto applied = session->scene().apply_edits(document, by);
+  const std::optional<std::string> name =
+      document.environment ? document.environment->name : std::nullopt;
+  if (name) {
+    const auto known = host.environments().find(*name);
+    if (!known) return done(below(known.error(), "edits.environment"));
+  }
+  host.apply_edits(session, document, by, [&host, session, name, by, done](Result<void> applied) {
     if (!applied) return done(applied.error());
-    return done(session->scene().edits());
-  }
-  const auto known = host.environments().find(*environment->name);
-  if (!known) return done(below(known.error(), "edits.environment"));
-  if (const auto applied = session->scene().apply_edits(document, by); !applied) {
-    return done(applied.error());
-  }
-  host.environments().show(session, *environment->name, by,
-                           [session, done = std::move(done)](Result<void> outcome) {
-                             if (!outcome) return done(below(outcome.error(), "edits.environment"));
-                             done(session->scene().edits());
-                           });
+    if (!name) return done(session->scene().edits());
+    host.environments().show(session, *name, by, [session, done](Result<void> outcome) {
+      if (!outcome) return done(below(outcome.error(), "edits.environment"));
+      done(session->scene().edits());
+    });
+  });
 }
 
 }  // namespace

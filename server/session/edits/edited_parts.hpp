@@ -1,40 +1,21 @@
 #pragma once
 
 #include <cstddef>
-#include <set>
 #include <string>
 #include <string_view>
 #include <tuple>
-#include <utility>
 #include <vector>
 
 #include "protocol/json/fields.hpp"
 #include "protocol/json/suggestions.hpp"
 #include "protocol/result.hpp"
+#include "scene/unique_names.hpp"
 
 // What the edits of lights and of materials have in common.
 
 namespace heliograph::session {
 
-/// "sun", "sun 2" ...; "light 3" where there is no name.
-class UniqueNames {
- public:
-  explicit UniqueNames(std::string kind) : kind_(std::move(kind)) {}
-
-  std::string next(const std::string& requested) {
-    const std::string number = std::to_string(++count_);
-    std::string name = requested.empty() ? kind_ + " " + number : requested;
-    for (int copy = 2; !taken_.insert(name).second; ++copy) {
-      name = (requested.empty() ? kind_ : requested) + " " + std::to_string(copy);
-    }
-    return name;
-  }
-
- private:
-  const std::string kind_;
-  int count_ = 0;
-  std::set<std::string> taken_;
-};
+using scene::UniqueNames;
 
 /// Names of the members of `now` that are not as in `initial`.
 template <class Info>

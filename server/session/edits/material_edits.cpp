@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "scene/gltf/materials/layer_table.hpp"
+#include "scene/texture_override.hpp"
 #include "session/edits/edited_parts.hpp"
 #include "session/edits/material_form.hpp"
 
@@ -14,12 +15,12 @@ using protocol::MaterialInfo;
 using protocol::Result;
 
 std::vector<MaterialInfo> describe_materials(const scene::Scene& scene) {
-  UniqueNames names("material");
+  const std::vector<std::string> names =
+      scene::material_labels(scene.material_names, scene.materials.size());
   std::vector<MaterialInfo> materials;
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     materials.push_back(describe(file_material(scene, i)));
-    const bool named = i < scene.material_names.size();
-    materials.back().name = names.next(named ? scene.material_names[i] : std::string());
+    materials.back().name = names[i];
   }
   return materials;
 }

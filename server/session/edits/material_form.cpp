@@ -44,10 +44,19 @@ void visit_extension_factors(const auto& visit) {
   visit("clearcoat_normal_scale", &Info::clearcoat_normal_scale, &Patch::clearcoat_normal_scale);
   visit("sheen_color", &Info::sheen_color, &Patch::sheen_color);
   visit("sheen_roughness", &Info::sheen_roughness, &Patch::sheen_roughness);
+  visit("iridescence", &Info::iridescence, &Patch::iridescence);
+  visit("iridescence_ior", &Info::iridescence_ior, &Patch::iridescence_ior);
+  visit("iridescence_thickness_minimum", &Info::iridescence_thickness_minimum,
+        &Patch::iridescence_thickness_minimum);
+  visit("iridescence_thickness_maximum", &Info::iridescence_thickness_maximum,
+        &Patch::iridescence_thickness_maximum);
+  visit("anisotropy", &Info::anisotropy, &Patch::anisotropy);
+  visit("anisotropy_rotation", &Info::anisotropy_rotation, &Patch::anisotropy_rotation);
   visit("transmission", &Info::transmission, &Patch::transmission);
   visit("thickness", &Info::thickness, &Patch::thickness);
   visit("attenuation_distance", &Info::attenuation_distance, &Patch::attenuation_distance);
   visit("attenuation_color", &Info::attenuation_color, &Patch::attenuation_color);
+  visit("dispersion", &Info::dispersion, &Patch::dispersion);
 }
 
 bool is_unlit(const shared::Material& material) {
@@ -72,11 +81,18 @@ void describe_extensions(const FileMaterial& material, MaterialInfo& info) {
   info.clearcoat_normal_scale = from.clearcoat_normal_scale;
   info.sheen_color = to_protocol(from.sheen_color);
   info.sheen_roughness = from.sheen_roughness;
+  info.iridescence = from.iridescence;
+  info.iridescence_ior = from.iridescence_ior;
+  info.iridescence_thickness_minimum = from.iridescence_thickness_minimum;
+  info.iridescence_thickness_maximum = from.iridescence_thickness_maximum;
+  info.anisotropy = from.anisotropy;
+  info.anisotropy_rotation = from.anisotropy_rotation;
   if (!transmits(material)) return;
   info.transmission = from.transmission;
   info.thickness = from.thickness;
   info.attenuation_distance = from.attenuation_distance;
   info.attenuation_color = to_protocol(from.attenuation_color);
+  info.dispersion = from.dispersion;
 }
 
 void name_textures(const FileMaterial& material, MaterialInfo& info) {
@@ -95,7 +111,10 @@ void name_textures(const FileMaterial& material, MaterialInfo& info) {
                          std::pair{"sheen_color", &more.sheen_color_texture},
                          std::pair{"sheen_roughness", &more.sheen_roughness_texture},
                          std::pair{"transmission", &more.transmission_texture},
-                         std::pair{"thickness", &more.thickness_texture}};
+                         std::pair{"thickness", &more.thickness_texture},
+                         std::pair{"iridescence", &more.iridescence_texture},
+                         std::pair{"iridescence_thickness", &more.iridescence_thickness_texture},
+                         std::pair{"anisotropy", &more.anisotropy_texture}};
   for (const auto& [name, slot] : slots) {
     if (slot->texture != shared::no_texture) info.textures.emplace_back(name);
   }
@@ -155,10 +174,17 @@ scene::MaterialLayers extensions_form(const MaterialInfo& info, scene::MaterialL
   number(info.clearcoat_normal_scale, layers.clearcoat_normal_scale);
   color(info.sheen_color, layers.sheen_color);
   number(info.sheen_roughness, layers.sheen_roughness);
+  number(info.iridescence, layers.iridescence);
+  number(info.iridescence_ior, layers.iridescence_ior);
+  number(info.iridescence_thickness_minimum, layers.iridescence_thickness_minimum);
+  number(info.iridescence_thickness_maximum, layers.iridescence_thickness_maximum);
+  number(info.anisotropy, layers.anisotropy);
+  number(info.anisotropy_rotation, layers.anisotropy_rotation);
   number(info.transmission, layers.transmission);
   number(info.thickness, layers.thickness);
   number(info.attenuation_distance, layers.attenuation_distance);
   color(info.attenuation_color, layers.attenuation_color);
+  number(info.dispersion, layers.dispersion);
   return layers;
 }
 

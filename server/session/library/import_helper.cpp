@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -13,8 +14,10 @@
 #include <cstring>
 #include <exception>
 #include <string>
+#include <vector>
 
 #include "scene/environment.hpp"
+#include "scene/image/image_decoder.hpp"
 #include "scene/import.hpp"
 #include "session/library/import_confinement.hpp"
 
@@ -59,7 +62,28 @@ std::uint64_t most_memory(const scene::ImportLimits& limits) {
          bytes_per_texel * limits.texels;
 }
 
+/// An image for textures, completely decoded.
+std::string import_image(const std::string& name, const scene::ImportLimits& limits) {
+  const std::string label = "the image " + name;
+  const std::vector<std::uint8_t> file = scene::read_all({STDIN_FILENO, limits.file_bytes, label});
+  try {
+    const scene::ImageSize size = scene::probe_image(file);
+    const std::uint64_t texels = std::uint64_t(size.width) * size.height;
+    if (std::max(size.width, size.height) > limits.texture_size || texels > limits.texels) {
+      throw scene::ImportError("is " + std::to_string(size.width) + " x " +
+                               std::to_string(size.height) + " pixels: the limit is " +
+                               std::to_string(limits.texture_size));
+    }
+    std::vector<std::uint8_t> rgba(texels * 4);
+    scene::decode_image(file, size, rgba);
+    return "image " + std::to_string(size.width) + " " + std::to_string(size.height);
+  } catch (const scene::ImportError& refusal) {
+    throw scene::ImportError(label + " " + refusal.what());
+  }
+}
+
 std::string import_file(const ImportRequest& request, const scene::ImportLimits& limits) {
+  if (request.kind == ImportKind::image) return import_image(request.name, limits);
   if (request.kind == ImportKind::scene) {
     const scene::Scene scene =
         scene::import_lone_gltf({STDIN_FILENO, limits.file_bytes, "the file"}, limits);

@@ -9,7 +9,7 @@
 namespace heliograph::session {
 
 /// What the server sends its helper beside a file and a pipe for the answer; the name follows.
-enum class ImportKind : char { scene = 's', environment = 'e' };
+enum class ImportKind : char { scene = 's', environment = 'e', image = 'i' };
 
 /// How the process ended that imported a file, as the helper tells it.
 struct ImportEnd {

@@ -251,6 +251,7 @@ ImportedFile ImportProcess::answer_of(const std::string& text, const ImportEnd& 
   ImportedFile imported;
   if (word == "scene" && lines >> imported.triangles) return imported;
   if (word == "environment" && lines >> imported.width >> imported.height) return imported;
+  if (word == "image" && lines >> imported.width >> imported.height) return imported;
   std::getline(lines, rest);
   if (word == "refused" && rest.size() > 1) throw scene::ImportError(on_one_line(rest.substr(1)));
   throw scene::ImportError("a decoder failed");

@@ -15,7 +15,7 @@ namespace heliograph::session {
 /// What is told of an imported file.
 struct ImportedFile {
   std::uint64_t triangles = 0;  // of a scene
-  std::uint32_t width = 0;      // of an environment, in pixels
+  std::uint32_t width = 0;      // of an environment or image, in pixels
   std::uint32_t height = 0;
 };
 

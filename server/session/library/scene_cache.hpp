@@ -23,6 +23,7 @@ struct SceneKey {
   scene::SceneChoice choice;
   std::filesystem::path environment;  // empty: none
   std::size_t device = 0;
+  std::vector<scene::TextureOverride> textures = {};  // sorted: see session/edits/texture_edits.hpp
   bool operator==(const SceneKey&) const = default;
 };
 

@@ -25,6 +25,8 @@ namespace {
 
 /// Fraction of the import in the progress; the rest is upload and acceleration structure.
 constexpr float import_fraction = 0.7f;
+/// What is done of that when the scene can be shown without its textures, about.
+constexpr float first_view_fraction = 0.2f;
 /// Progress between two reports of one stage.
 constexpr float report_step = 0.01f;
 /// How long after a load its temporary memory is returned, since the first frames leave some
@@ -37,11 +39,28 @@ constexpr std::string_view progress_key = protocol::notifications::scene_progres
 
 /// Tells all viewers of a session how far the load is that `by` has requested.
 void send_progress(Session& session, const std::string& by, const std::string& name,
-                   std::string_view stage, float fraction) {
-  session.viewers().send_all(
-      protocol::make_notification<protocol::notifications::scene_progress>(
-          {.name = name, .stage = std::string(stage), .fraction = fraction, .by = by}),
-      progress_key);
+                   std::string_view stage, float fraction, bool first_view = false) {
+  session.viewers().send_all(protocol::make_notification<protocol::notifications::scene_progress>(
+                                 {.name = name,
+                                  .stage = std::string(stage),
+                                  .fraction = fraction,
+                                  .first_view = first_view,
+                                  .by = by}),
+                             progress_key);
+}
+
+/// Whether viewers may see the scene before it is complete: programs that step through frames or
+/// render a reference do not.
+bool may_see_first_view(const Session& session) {
+  return session.viewers().has_active_viewer() && !session.renders_without_viewers();
+}
+
+/// Whether rays look up textures: then the acceleration structure is built again.
+bool has_masks(const scene::Scene& scene) {
+  constexpr std::uint32_t partial = shared::material_alpha_mask | shared::material_alpha_blend;
+  return std::ranges::any_of(scene.materials, [](const shared::Material& material) {
+    return (material.flags & partial) != 0;
+  });
 }
 
 protocol::Error superseded() {
@@ -65,6 +84,14 @@ protocol::Error no_such(const scene::NoSuchChoice& failure, const scene::SceneCh
   const std::vector<std::string_view> names(failure.names().begin(), failure.names().end());
   return protocol::error::not_found(failure.member(),
                                     "is not in the file" + protocol::suggestion(requested, names));
+}
+
+/// Of an edit document: other textures are checked before they are asked for.
+protocol::Error no_such(const scene::NoSuchSlot& failure) {
+  const std::vector<std::string_view> names(failure.names().begin(), failure.names().end());
+  return protocol::error::not_found(
+      "edits.textures", "the scene has no " + failure.member() + " " + failure.requested() +
+                            protocol::suggestion(failure.requested(), names));
 }
 
 double seconds_since(Clock::time_point start) {
@@ -104,21 +131,30 @@ void SceneLoader::stop() {
 }
 
 void SceneLoader::load(std::shared_ptr<Session> session, const protocol::SceneLoad& request,
-                       const std::string& by, Completion done) {
+                       Textures textures, const std::string& by, Completion done) {
   Result<CatalogueEntry> entry = catalogue_.find(request.name);
   if (!entry) return done(entry.error());
   SceneKey key{.file = entry->path,
                .choice = {request.scene.value_or(""), request.variant.value_or("")},
                .environment = environments_.path_for(*entry).value_or(""),
-               .device = session->device()};
+               .device = session->device(),
+               .textures = std::move(textures)};
+  enqueue(std::move(key), *entry,
+          {std::move(session), by, std::move(done), entry->name, request.edits});
+}
+
+/// Starts the load, joins the one of the same scene, or shows it at once from the cache.
+void SceneLoader::enqueue(SceneKey key, const CatalogueEntry& entry, Waiter waiter) {
   std::vector<Waiter> replaced;
   std::optional<LoadedScene> cached;
   std::optional<Result<protocol::SceneInfo>> shown;
   {
     const std::lock_guard lock(mutex_);
-    if (stopping_) return done(stopped());
+    if (stopping_) return waiter.done(stopped());
     std::shared_ptr<Job> job = find_job(key);
-    replaced = remove_waiters([&](const Session& own) { return &own == session.get(); }, job.get());
+    replaced =
+        remove_waiters([&](const Session& own) { return &own == waiter.session.get(); }, job.get());
+    join(waiter, replaced);
     if (!job) cached = cache_.find(key);
     if (job || cached) {
       cache_.count_hit();
@@ -126,18 +162,18 @@ void SceneLoader::load(std::shared_ptr<Session> session, const protocol::SceneLo
       cache_.count_miss();
       job = jobs_.emplace_back(std::make_shared<Job>());
       job->key = std::move(key);
-      job->entry = *entry;
+      job->entry = entry;
     }
-    Waiter waiter{std::move(session), by, done, entry->name, request.edits};
     if (cached) {
       shown = show(waiter, *cached);
     } else {
+      if (job->first_view) show_first_view(*job, waiter);
       job->waiters.push_back(std::move(waiter));
     }
   }
   wake_->notify();
-  for (const Waiter& waiter : replaced) waiter.done(superseded());
-  if (shown) done(*std::move(shown));
+  for (const Waiter& other : replaced) other.done(superseded());
+  if (shown) waiter.done(*std::move(shown));
 }
 
 protocol::SceneCancelled SceneLoader::cancel(const Session& session) {
@@ -163,6 +199,7 @@ std::vector<SceneLoader::Waiter> SceneLoader::remove_waiters(
     const auto own =
         std::stable_partition(job->waiters.begin(), job->waiters.end(),
                               [&](const Waiter& waiter) { return !matches(*waiter.session); });
+    std::for_each(own, job->waiters.end(), end_first_view);
     removed.insert(removed.end(), std::make_move_iterator(own),
                    std::make_move_iterator(job->waiters.end()));
     job->waiters.erase(own, job->waiters.end());
@@ -206,6 +243,7 @@ void SceneLoader::run() {
 
 void SceneLoader::drop(Job& job) {
   const std::lock_guard lock(mutex_);
+  std::ranges::for_each(job.waiters, end_first_view);
   job.waiters.clear();
   std::erase_if(jobs_, [&](const auto& other) { return other.get() == &job; });
 }
@@ -248,6 +286,8 @@ void SceneLoader::run_job(Job& job) {
                              seconds_since(start)));
   } catch (const scene::NoSuchChoice& failure) {
     finish(job, no_such(failure, job.key.choice));
+  } catch (const scene::NoSuchSlot& failure) {
+    finish(job, no_such(failure));
   } catch (const scene::ImportError& failure) {
     finish(job,
            protocol::error::invalid("name", "cannot be loaded: " + std::string(failure.what())));
@@ -279,6 +319,7 @@ void SceneLoader::report_device_loss(Job& job) {
     // Before the report: the device may be recovered at once.
     lost_devices_.insert(job.key.device);
   }
+  end_first_views(job);
   if (on_device_loss_) on_device_loss_(job.key.device);
   if (++job.device_losses == max_device_losses) {
     finish(job,
@@ -323,29 +364,85 @@ LoadedScene SceneLoader::import_scene(Job& job, std::vector<scene::SourceFile>& 
   checkpoint("reading", 0.0f);
   const auto environment = environments_.environment_at(job.key.environment);
   render::Engine& engine = devices_.engine(job.key.device);
-  auto imported = std::make_unique<scene::Scene>(scene::import_gltf(
-      job.entry.path, options_.limits,
-      {.choice = job.key.choice,
-       .progress = [&](std::string_view stage,
-                       float fraction) { checkpoint(stage, import_fraction * fraction); },
-       .stop = job.stop.get_token(),
-       .kept_textures = render::kept_textures(engine)}));
+  scene::ImportOptions options{
+      .choice = job.key.choice,
+      .progress = [&](std::string_view stage,
+                      float fraction) { checkpoint(stage, import_fraction * fraction); },
+      .stop = job.stop.get_token(),
+      .kept_textures = render::kept_textures(engine),
+      .textures = job.key.textures};
+  if (wants_first_view(job)) {
+    options.untextured = [&](std::unique_ptr<scene::Scene> scene, std::uint64_t image_bytes) {
+      upload_first_view(job, std::move(scene), image_bytes, environment);
+    };
+    options.untextured_from = options_.first_view_bytes;
+  }
+  auto imported =
+      std::make_unique<scene::Scene>(scene::import_gltf(job.entry.path, options_.limits, options));
   sources.insert(sources.end(), imported->sources.begin(), imported->sources.end());
   LoadedScene loaded{.name = job.entry.name};
   loaded.resources = engine.upload_and_free_pixels(
-      std::move(imported), environment, [&](std::string_view stage, float fraction) {
+      std::move(imported), environment,
+      [&](std::string_view stage, float fraction) {
         checkpoint(stage, import_fraction + (1.0f - import_fraction) * fraction);
-      });
+      },
+      job.first_view);
   loaded.scene = render::scene_of(*loaded.resources);
   loaded.environment = job.key.environment.filename().string();
   loaded.host_bytes = loaded.scene->bytes();
   return loaded;
 }
 
+/// Whether a session that waits for it has viewers to whom its geometry can be shown alone. What
+/// edits hide and change would show.
+bool SceneLoader::wants_first_view(const Job& job) {
+  const std::lock_guard lock(mutex_);
+  return std::ranges::any_of(job.waiters, [](const Waiter& waiter) {
+    return !waiter.edits && !waiter.variant && may_see_first_view(*waiter.session);
+  });
+}
+
+/// Not where a second acceleration structure would take much of the scene's memory.
+void SceneLoader::upload_first_view(Job& job, std::unique_ptr<scene::Scene> scene,
+                                    std::uint64_t image_bytes,
+                                    const std::shared_ptr<const scene::Environment>& environment) {
+  if (has_masks(*scene) && image_bytes < scene->bytes()) return;
+  auto uploaded = devices_.engine(job.key.device)
+                      .upload(std::shared_ptr<const scene::Scene>(std::move(scene)), environment,
+                              [&](std::string_view stage, float) {
+                                throw_if_stopped(job);
+                                report_progress(job, stage, import_fraction * first_view_fraction);
+                              });
+  throw_if_stopped(job);
+  const std::lock_guard lock(mutex_);
+  job.first_view = std::move(uploaded);
+  for (Waiter& waiter : job.waiters) show_first_view(job, waiter);
+}
+
+void SceneLoader::show_first_view(const Job& job, Waiter& waiter) {
+  if (waiter.edits || waiter.variant || !may_see_first_view(*waiter.session)) return;
+  waiter.session->scene().show_first_view(render::scene_of(*job.first_view), job.first_view,
+                                          waiter.by);
+  waiter.sees_first_view = true;
+}
+
+void SceneLoader::end_first_view(Waiter& waiter) {
+  if (std::exchange(waiter.sees_first_view, false)) waiter.session->scene().end_first_view();
+}
+
+void SceneLoader::end_first_views(Job& job) {
+  const std::lock_guard lock(mutex_);
+  std::ranges::for_each(job.waiters, end_first_view);
+  job.first_view = nullptr;
+}
+
 /// The answer to the request; its edits may not fit the scene.
 Result<protocol::SceneInfo> SceneLoader::show(const Waiter& waiter, const LoadedScene& loaded) {
-  const Result<void> shown = waiter.session->scene().show(
-      loaded, waiter.edits.value_or(protocol::EditDocument()), waiter.by);
+  SessionScene& scene = waiter.session->scene();
+  const Result<void> shown =
+      waiter.variant
+          ? scene.show_variant(loaded, waiter.edits, waiter.by)
+          : scene.show(loaded, waiter.edits.value_or(protocol::EditDocument()), waiter.by);
   send_progress(*waiter.session, waiter.by, loaded.name, shown ? "ready" : "failed",
                 shown ? 1.0f : 0.0f);
   if (!shown) return shown.error();
@@ -360,8 +457,9 @@ void SceneLoader::finish(Job& job, const Result<LoadedScene>& outcome) {
     const std::lock_guard lock(mutex_);
     waiters = std::exchange(job.waiters, {});
     std::erase_if(jobs_, [&](const auto& other) { return other.get() == &job; });
-    for (const Waiter& waiter : waiters) {
+    for (Waiter& waiter : waiters) {
       answers.push_back(outcome ? show(waiter, *outcome) : outcome.error());
+      if (!answers.back()) end_first_view(waiter);
     }
   }
   for (std::size_t i = 0; i < waiters.size(); ++i) {
@@ -383,7 +481,8 @@ void SceneLoader::report_progress(Job& job, std::string_view stage, float fracti
   job.fraction = fraction;
   const std::lock_guard lock(mutex_);
   for (const Waiter& waiter : job.waiters) {
-    send_progress(*waiter.session, waiter.by, job.entry.name, stage, fraction);
+    send_progress(*waiter.session, waiter.by, job.entry.name, stage, fraction,
+                  waiter.sees_first_view);
   }
 }
 

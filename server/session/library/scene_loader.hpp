@@ -28,14 +28,16 @@ struct LoaderOptions {
   std::optional<std::filesystem::path> environment;  // of every scene, instead of its own
   scene::ImportLimits limits;
   std::uint64_t cache_bytes = 1ull << 30;  // see SceneCache
+  /// Viewers see scenes whose images have larger files before these are decoded.
+  std::uint64_t first_view_bytes = 8ull << 20;
 };
 
 /// Loads scenes beside rendering, one after the other, and shows them in sessions when they are
-/// complete. On failure a session keeps its scene. A newer request of a session replaces its older
-/// one, even if that is being loaded; requests of a session that ends fail. Requests for the same
-/// scene on the same device share one load, and loaded scenes stay in a cache. A scene goes to the
-/// device of the session that shows it; another device takes it over without another import. Thread
-/// safe.
+/// complete; viewers see those with large images before, without their textures. On failure a
+/// session keeps its scene. A newer request of a session replaces its older one, even if that is
+/// being loaded; requests of a session that ends fail. Requests for the same scene on the same
+/// device share one load, and loaded scenes stay in a cache. A scene goes to the device of the
+/// session that shows it; another device takes it over without another import. Thread safe.
 class SceneLoader {
  public:
   using Completion = std::function<void(protocol::Result<protocol::SceneInfo>)>;
@@ -45,9 +47,19 @@ class SceneLoader {
   SceneLoader(const SceneLoader&) = delete;
   SceneLoader& operator=(const SceneLoader&) = delete;
 
-  /// `done` is called once, here or on the loading thread, without locks.
-  void load(std::shared_ptr<Session> session, const protocol::SceneLoad& request,
+  using Textures = std::vector<scene::TextureOverride>;
+
+  /// `textures`, sorted, take the place of those of the file; the request's edits do not count for
+  /// them. `done` is called once, here or on the loading thread, without locks.
+  void load(std::shared_ptr<Session> session, const protocol::SceneLoad& request, Textures textures,
             const std::string& by, Completion done);
+  /// Shows the scene of the session with other textures, and with `edits` in place of its edits
+  /// if they are given. Answers also the requests of this kind that it replaces.
+  void load_textures(std::shared_ptr<Session> session, Textures textures,
+                     std::optional<protocol::EditDocument> edits, const std::string& by,
+                     Completion done);
+  /// Those that the session is to show by a request of load_textures; nothing: there is none.
+  std::optional<Textures> pending_textures(const Session& session);
   /// Cancels the request of `session`, which fails; the load itself stops soon unless other
   /// sessions wait for it.
   protocol::SceneCancelled cancel(const Session& session);
@@ -73,24 +85,36 @@ class SceneLoader {
     Completion done;
     std::string name;                             // of the scene
     std::optional<protocol::EditDocument> edits;  // to show it with
+    bool variant = false;                         // of the scene that the session shows
+    bool sees_first_view = false;
   };
   struct Job {
     SceneKey key;
     CatalogueEntry entry;
     std::vector<Waiter> waiters;  // guarded by mutex_
     std::stop_source stop;        // requested without waiters, and by stop()
+    /// What viewers see meanwhile, or null; guarded by mutex_.
+    std::shared_ptr<const render::SceneResources> first_view;
     std::string
         stage;  // of the newest report; this and the rest are used by the loading thread only
     float fraction = 0.0f;
     int device_losses = 0;  // during this load
   };
 
+  static void join(Waiter& waiter, std::vector<Waiter>& replaced);
+  void enqueue(SceneKey key, const CatalogueEntry& entry, Waiter waiter);
   void run();
   std::shared_ptr<Job> next_job();
   std::shared_ptr<Job> first_job();
   void drop(Job& job);
   void run_job(Job& job);
   std::string sessions_of(const Job& job);
+  bool wants_first_view(const Job& job);
+  void upload_first_view(Job& job, std::unique_ptr<scene::Scene> scene, std::uint64_t image_bytes,
+                         const std::shared_ptr<const scene::Environment>& environment);
+  static void show_first_view(const Job& job, Waiter& waiter);
+  static void end_first_view(Waiter& waiter);
+  void end_first_views(Job& job);
   LoadedScene load_scene(Job& job);
   LoadedScene import_scene(Job& job, std::vector<scene::SourceFile>& sources);
   void report_device_loss(Job& job);

@@ -39,6 +39,26 @@ bool starts_with(const fs::path& file, std::string_view magic) {
   return stream.read(start.data(), std::ssize(start)) && start == magic;
 }
 
+/// The extension of an image's file by its first bytes; PNG where it is none of the others.
+std::string_view image_extension(const fs::path& file) {
+  using namespace std::string_view_literals;
+  if (starts_with(file, "\xff\xd8"sv)) return ".jpg";
+  if (starts_with(file, "RIFF"sv)) return ".webp";
+  return starts_with(file, "\xabKTX 20"sv) ? ".ktx2" : ".png";
+}
+
+std::string_view described(UploadKind kind) {
+  switch (kind) {
+    case UploadKind::scene:
+      return "a scene";
+    case UploadKind::environment:
+      return "an environment";
+    case UploadKind::image:
+      break;
+  }
+  return "an image";
+}
+
 /// The fault in the header of a binary glTF file (specification section 4.4.2), or nothing.
 std::string_view header_fault(const fs::path& file) {
   std::array<unsigned char, glb_header_bytes> header{};
@@ -61,8 +81,10 @@ UploadStore::UploadStore(UploadOptions options)
   try {
     fs::create_directories(options_.folder / "scenes");
     fs::create_directories(options_.folder / "environments");
+    fs::create_directories(options_.folder / "images");
     scenes_ = fs::canonical(options_.folder / "scenes");
     environments_ = fs::canonical(options_.folder / "environments");
+    images_ = fs::canonical(options_.folder / "images");
     incoming_ = scenes_.parent_path() / "incoming";
     fs::remove_all(incoming_);
     fs::create_directories(incoming_);
@@ -76,8 +98,8 @@ protocol::Result<std::shared_ptr<UploadStore::Incoming>> UploadStore::begin(Uplo
                                                                             const std::string& name,
                                                                             std::uint64_t bytes) {
   if (!is_valid_name(name)) {
-    const std::string what = kind == UploadKind::scene ? "a scene" : "an environment";
-    return protocol::error::invalid("name", "is not a valid name of " + what,
+    return protocol::error::invalid("name",
+                                    "is not a valid name of " + std::string(described(kind)),
                                     "1 to 64 letters, digits, _ and -");
   }
   if (bytes > options_.max_bytes) {
@@ -120,7 +142,9 @@ protocol::Result<UploadedFile> UploadStore::accept(Incoming& incoming) {
     if (!fault.empty()) return refused(std::string(fault));
     UploadedFile uploaded{
         .kind = incoming.kind(), .name = incoming.name(), .bytes = fs::file_size(file)};
-    is_scene ? accept_scene(incoming, uploaded) : accept_environment(incoming, uploaded);
+    if (is_scene) accept_scene(incoming, uploaded);
+    if (incoming.kind() == UploadKind::environment) accept_environment(incoming, uploaded);
+    if (incoming.kind() == UploadKind::image) accept_image(incoming, uploaded);
     log_info({}, "the upload " + incoming.name() +
                      " was accepted: " + std::to_string(uploaded.bytes) + " bytes");
     return uploaded;
@@ -151,6 +175,20 @@ void UploadStore::accept_environment(Incoming& incoming, UploadedFile& accepted)
   fs::remove(environments_ / (incoming.name() + (exr ? ".hdr" : ".exr")), ignored);
 }
 
+/// The same of an image of textures.
+void UploadStore::accept_image(Incoming& incoming, UploadedFile& accepted) {
+  const ImportedFile imported =
+      importer_.import(ImportKind::image, incoming.name(), incoming.path());
+  accepted.width = imported.width;
+  accepted.height = imported.height;
+  const std::string_view own = image_extension(incoming.path());
+  incoming.keep_as(images_ / (incoming.name() + std::string(own)));
+  std::error_code ignored;
+  for (const std::string_view other : {".png", ".jpg", ".webp", ".ktx2"}) {
+    if (other != own) fs::remove(images_ / (incoming.name() + std::string(other)), ignored);
+  }
+}
+
 void UploadStore::stop() {
   importer_.stop();
   checker_.stop();
@@ -159,7 +197,7 @@ void UploadStore::stop() {
 std::uint64_t UploadStore::bytes_kept() const {
   std::uint64_t bytes = 0;
   std::error_code error;
-  for (const fs::path& folder : {scenes_, environments_}) {
+  for (const fs::path& folder : {scenes_, environments_, images_}) {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
       const std::uintmax_t size = entry.file_size(error);
       if (!error) bytes += size;

@@ -21,19 +21,20 @@ struct UploadOptions {
   std::vector<std::string> import_arguments;  // see ImportProcess
 };
 
-enum class UploadKind { scene, environment };
+enum class UploadKind { scene, environment, image };
 
 struct UploadedFile {
   UploadKind kind = UploadKind::scene;
   std::string name;
   std::uint64_t bytes = 0;
   std::uint64_t triangles = 0;  // of a scene
-  std::uint32_t width = 0;      // of an environment, in pixels
+  std::uint32_t width = 0;      // of an environment or image, in pixels
   std::uint32_t height = 0;
 };
 
-/// Scenes and environments that clients upload. Each is checked by importing it, in a process of
-/// its own, and then moved atomically to where the catalogue finds it. Thread safe.
+/// Scenes, environments and images of textures that clients upload. Each is checked by importing
+/// it, in a process of its own, and then moved atomically to where the catalogue finds it. Thread
+/// safe.
 class UploadStore {
  public:
   /// Creates the folders and removes unfinished uploads of an earlier process.
@@ -45,6 +46,8 @@ class UploadStore {
   /// Folder of accepted environments, apart from the scenes so that none becomes the sky of a scene
   /// by its name.
   const std::filesystem::path& environments() const { return environments_; }
+  /// Folder of accepted images of textures.
+  const std::filesystem::path& images() const { return images_; }
   std::uint64_t max_bytes() const { return options_.max_bytes; }
 
   /// A file that is being received. The destructor releases its reserved bytes and removes the file
@@ -64,11 +67,13 @@ class UploadStore {
   protocol::Result<UploadedFile> accept(Incoming& incoming);
   void accept_scene(Incoming& incoming, UploadedFile& accepted);
   void accept_environment(Incoming& incoming, UploadedFile& accepted);
+  void accept_image(Incoming& incoming, UploadedFile& accepted);
   std::uint64_t bytes_kept() const;
 
   const UploadOptions options_;
   std::filesystem::path scenes_;
   std::filesystem::path environments_;
+  std::filesystem::path images_;
   std::filesystem::path incoming_;
   std::mutex mutex_;
   std::uint64_t reserved_bytes_ = 0;  // for files that are being received

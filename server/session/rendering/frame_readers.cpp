@@ -29,7 +29,7 @@ constexpr std::chrono::minutes capture_timeout{5};
 
 /// Whether the frame shows the state, as it was no earlier than `moment` where time passes in it.
 bool shows_state_since(const ReadableFrame& frame, Clock::time_point moment) {
-  if (!frame.newest) return false;
+  if (!frame.newest || frame.state.first_view) return false;
   if (frame.lockstep) return frame.stepped;
   return frame.shows_state && (!frame.state.animation.playing || frame.began >= moment);
 }

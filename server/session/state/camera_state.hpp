@@ -32,6 +32,8 @@ class CameraState {
   /// Shows all of `bounds`.
   void fit(const scene::Bounds& bounds, float aspect);
   void remove_viewer(const std::string& viewer) { input_seqs_.erase(viewer); }
+  /// Knows the inputs that another camera has taken in place of this one.
+  void take_inputs(const CameraState& other) { input_seqs_ = other.input_seqs_; }
 
   const scene::Camera& camera() const { return camera_; }
   /// How often it was moved.

@@ -47,6 +47,7 @@ struct RenderState {
   std::uint64_t reset_count = 0;              // how often all accumulated data was to be discarded
   std::optional<Clock::time_point> lockstep;  // the time in lockstep
   bool reference_started = false;             // it is rendered with or without viewers
+  bool first_view = false;  // viewers see the scene without its textures, which programs do not
 
   Clock::time_point now() const { return lockstep ? *lockstep : Clock::now(); }
 };

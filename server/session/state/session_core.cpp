@@ -52,8 +52,9 @@ void SessionCore::follow(const SessionCore& leader) {
       nodes.hidden_instances() == leader.nodes.hidden_instances() &&
       nodes.isolated() == leader.nodes.isolated() && nodes.selected() == leader.nodes.selected() &&
       section.get() == leader.section.get() && clock == timeline.clock();
+  const bool loaded = std::exchange(scene_loads, leader.scene_loads) != leader.scene_loads;
   if (same) return;
-  if (scene != leader.scene) camera.copy_from(leader.camera);
+  if (loaded && scene != leader.scene) camera.copy_from(leader.camera);
   scene = leader.scene;
   resources = leader.resources;
   scene_info = leader.scene_info;
@@ -67,6 +68,7 @@ void SessionCore::follow(const SessionCore& leader) {
 }
 
 void SessionCore::lead_camera(const std::string& by) {
+  if (shows_first_view()) return;  // others see the scene before
   for (const auto& weak : camera_followers) {
     const auto follower = weak.lock();
     if (!follower) continue;
@@ -82,34 +84,40 @@ void SessionCore::lead_camera(const std::string& by) {
 
 RenderState SessionCore::snapshot() const {
   const AnimationClock& clock = timeline.clock();
-  return {.version = version,
-          .rev = rev,
-          .changed_at = changed_at,
-          .resources = resources,
-          .scene = scene,
-          .lights = edits.device_lights(),
-          .materials = edits.device_materials(),
-          .layers = edits.device_layers(),
-          .hidden = nodes.hidden_instances(),
-          .selected = nodes.selected_instances(),
-          .section = section.enabled(),
-          .environment = environment,
-          .camera = camera.camera(),
-          .camera_moves = camera.moves(),
-          .discontinuities = camera.discontinuities(),
-          .camera_follows = scene && camera.follows(*scene, clock.clip),
-          .animation = clock,
-          .settings = settings,
-          .width = width,
-          .height = height,
-          .inputs = camera.inputs(),
-          .reset_count = timeline.reset_count(),
-          .lockstep = timeline.lockstep_time(),
-          .reference_started = reference.started()};
+  RenderState state{.version = version,
+                    .rev = rev,
+                    .changed_at = changed_at,
+                    .resources = resources,
+                    .scene = scene,
+                    .lights = edits.device_lights(),
+                    .materials = edits.device_materials(),
+                    .layers = edits.device_layers(),
+                    .hidden = nodes.hidden_instances(),
+                    .selected = nodes.selected_instances(),
+                    .section = section.enabled(),
+                    .environment = environment,
+                    .camera = camera.camera(),
+                    .camera_moves = camera.moves(),
+                    .discontinuities = camera.discontinuities(),
+                    .camera_follows = scene && camera.follows(*scene, clock.clip),
+                    .animation = clock,
+                    .settings = settings,
+                    .width = width,
+                    .height = height,
+                    .inputs = camera.inputs(),
+                    .reset_count = timeline.reset_count(),
+                    .lockstep = timeline.lockstep_time(),
+                    .reference_started = reference.started()};
+  if (shows_first_view()) first_view->replace(state);
+  return state;
 }
 
 double SessionCore::clip_seconds() const {
   return timeline.clock().at(timeline.lockstep_time().value_or(Clock::now()));
+}
+
+Result<void> SessionCore::require_shown_scene() const {
+  return shows_first_view() ? Result<void>() : require_scene();
 }
 
 Result<void> SessionCore::require_scene() const {

@@ -21,6 +21,7 @@
 #include "session/state/bookmarks.hpp"
 #include "session/state/camera_state.hpp"
 #include "session/state/capture_queue.hpp"
+#include "session/state/first_view.hpp"
 #include "session/state/reference_mode.hpp"
 #include "session/state/render_state.hpp"
 #include "session/state/session_options.hpp"
@@ -61,7 +62,22 @@ struct SessionCore {
   void lead_camera(const std::string& by);
   /// Everything that a frame depends on.
   RenderState snapshot() const;
+  /// Whether viewers see `first_view`. What is for programs shows the session's own scene: steps
+  /// in lockstep, and a reference.
+  bool shows_first_view() const {
+    return first_view && !timeline.in_lockstep() && !reference.started();
+  }
+  /// What the camera's methods act on.
+  const std::shared_ptr<const scene::Scene>& shown_scene() const {
+    return shows_first_view() ? first_view->scene : scene;
+  }
+  CameraState& shown_camera() { return shows_first_view() ? first_view->camera : camera; }
+  const CameraState& shown_camera() const {
+    return shows_first_view() ? first_view->camera : camera;
+  }
   protocol::Result<void> require_scene() const;
+  /// One that the camera's methods act on.
+  protocol::Result<void> require_shown_scene() const;
   protocol::Result<protocol::SettingsApplied> patch_settings(const protocol::RawJson& patch,
                                                              const std::string& by);
   /// width / height
@@ -115,6 +131,7 @@ struct SessionCore {
   protocol::Settings settings;
   std::shared_ptr<const scene::Scene> scene;
   std::shared_ptr<const render::SceneResources> resources;
+  std::uint64_t scene_loads = 0;  // and unloads; other textures of a scene are none
   protocol::SceneInfo scene_info;
   SceneEdits edits;
   NodeState nodes;
@@ -122,6 +139,7 @@ struct SessionCore {
   std::optional<std::string> environment_name;  // with `environment`: null where the scene's own
   std::shared_ptr<const render::LitEnvironment> environment;
   CameraState camera;
+  std::optional<FirstView> first_view;
   Bookmarks bookmarks;
   MeasurementSet measured;
   AnnotationSet annotations;

@@ -57,6 +57,12 @@ Coverage coverage(const shared::Material& material) {
   return lowest > 255 ? Coverage::none : Coverage::masked;
 }
 
+bool cover_alike(std::span<const shared::Material> a, std::span<const shared::Material> b) {
+  return std::ranges::equal(a, b, [](const shared::Material& one, const shared::Material& other) {
+    return coverage(one) == coverage(other) && coverage(one) != Coverage::masked;
+  });
+}
+
 std::uint32_t ray_blending(const shared::Ray& ray, std::uint32_t blending) {
   if (blending == 0) return 0;
   std::uint32_t bits = blending;

@@ -128,7 +128,9 @@ class Edits(ServerTestCase):
         dark = self.patch_material(base_color=[0.02, 0.02, 0.02], roughness=0.2)["material"]
         before = self.image()
         for patch in ({"sheen_color": [0, 0, 1], "sheen_roughness": 0.5},
-                      {"specular_color": [0, 0, 0]}, {"ior": 2.5}, {"clearcoat": 1.0}):
+                      {"specular_color": [0, 0, 0]}, {"ior": 2.5}, {"clearcoat": 1.0},
+                      {"iridescence": 1.0, "iridescence_ior": 2.5,
+                       "iridescence_thickness_maximum": 500}):
             changed = self.patch_material(**patch)["material"]
             self.assertEqual(set(changed["changed"]), set(dark["changed"]) | set(patch))
             edited = self.image()
@@ -142,6 +144,10 @@ class Edits(ServerTestCase):
                                    ({"ior": 0.5}, "patch.ior", ""),
                                    ({"sheen_color": [0, 2, 0]}, "patch.sheen_color[1]", "0 to 1"),
                                    ({"attenuation_distance": -1}, "patch.attenuation_distance", ""),
+                                   ({"iridescence_ior": 0.5}, "patch.iridescence_ior", "1 to"),
+                                   ({"anisotropy": 2}, "patch.anisotropy", "0 to 1"),
+                                   ({"anisotropy_rotation": 7}, "patch.anisotropy_rotation", ""),
+                                   ({"dispersion": 0.5}, "patch.dispersion", ""),
                                    ({"transmission": 0.5}, "patch.transmission", ""),
                                    ({"alpha_cutoff": 0.5}, "patch.alpha_cutoff", "")):
             answer = self.server.ask("materials.patch", {"material": "diffuse", "patch": patch})

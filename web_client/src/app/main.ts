@@ -18,7 +18,7 @@ import { mountRefining } from "../overlay/refining.ts";
 import { mountStatus } from "../overlay/status.ts";
 import { Toasts } from "../overlay/toasts.ts";
 import { mountTransport } from "../overlay/transport.ts";
-import { mountUpload, uploadFile } from "../overlay/upload.ts";
+import { mountUpload, uploadFile, uploadImage } from "../overlay/upload.ts";
 import { viewFrom } from "../panel/scene/view_buttons.ts";
 import { mountPanel } from "../panel/panel.ts";
 import { bookmarkPath, createPathOptions } from "../panel/scene/path_fields.ts";
@@ -159,6 +159,7 @@ function main(): void {
     camera: { rotation, player: new PathPlayer(cameraHost), path, focus },
     selection: createPicker(canvas, find("mark")),
     upload: (file) => void uploadFile(viewer, file, toasts),
+    uploadImage: (file) => uploadImage(viewer, file, toasts),
     help: help.open,
     fullscreen: document.fullscreenEnabled ? toggleFullscreen : null,
   });

@@ -18,6 +18,8 @@ interface Notice {
   action?: { label: string; run: () => void };
   /** Whether the last frame stays visible, dimmed, behind the notice. */
   dims: boolean;
+  /** Whether the notice leaves the middle of the frame free. */
+  aside?: boolean;
 }
 
 const retryRefreshMs = 250;
@@ -152,24 +154,27 @@ function liveNotice(viewer: Viewer): Notice | null {
   return null;
 }
 
-/** The old scene stays visible, dimmed, up to the first frame of the new one. */
+/** The old scene stays visible, dimmed, up to the first frame of the new one, textured or not. */
 function loadingNotice(viewer: Viewer, loading: Loading): Notice {
-  const { kind, name, stage, fraction, by } = loading;
+  const { kind, name, stage, fraction, by, firstView = false } = loading;
   const isScene = kind === "scene" && stage !== firstFrameStage;
   const viewers = viewer.membership.session.value?.viewers ?? [];
   const author = viewers.findIndex((one) => one.viewer === by && !one.you);
   const other = viewers[author];
-  const detail = stage === firstFrameStage ? "Rendering the first frame" : humanise(stage);
+  const done = firstView ? ` ${Math.round(fraction * 100)} %` : "";
+  const detail =
+    stage === firstFrameStage ? "Rendering the first frame" : `${humanise(stage)}${done}`;
   return {
     title: `Loading ${name}…`,
-    poster: kind === "scene" ? thumbnailOf(name) : null,
+    poster: kind === "scene" && !firstView ? thumbnailOf(name) : null,
     action:
       isScene && viewer.mayChange && viewer.capabilities.has("scene.cancel")
         ? { label: "Cancel", run: () => void viewer.loading.cancel() }
         : undefined,
     detail: other ? `${viewerName(other, author)} loads it. ${detail}` : detail,
     progress: fraction > 0 && stage !== firstFrameStage ? fraction : null,
-    dims: true,
+    dims: !firstView,
+    aside: firstView,
   };
 }
 
@@ -193,6 +198,7 @@ function createCard(card: HTMLElement): { show(notice: Notice | null): void } {
       card.hidden = notice === null;
       if (!notice) return;
       card.classList.toggle("dims", notice.dims);
+      card.classList.toggle("aside", notice.aside ?? false);
       setText(title, notice.title);
       poster.hidden = !notice.poster;
       if (notice.poster && poster.src !== notice.poster) poster.src = notice.poster;

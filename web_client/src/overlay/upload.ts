@@ -32,8 +32,9 @@ export function mountUpload(viewer: Viewer, root: HTMLElement, toasts: Toasts): 
   });
   addEventListener("drop", (event) => {
     if (!carriesFile(event)) return;
-    event.preventDefault();
     veil.hidden = true;
+    if (event.defaultPrevented) return; // taken by what it was dropped on
+    event.preventDefault();
     const file = event.dataTransfer?.files[0];
     if (!file) return;
     if (/\.json$/i.test(file.name)) void importAnnotations(viewer, file);
@@ -76,6 +77,33 @@ export async function uploadFile(viewer: Viewer, file: File, toasts: Toasts): Pr
   }
 }
 
+/** Uploads an image for textures. Its name on the server; null where it cannot, which is told. */
+export async function uploadImage(
+  viewer: Viewer,
+  file: File,
+  toasts: Toasts,
+): Promise<string | null> {
+  const error = uploadError(viewer) ?? imageError(viewer, file);
+  if (error) {
+    toasts.show(error);
+    return null;
+  }
+  const name = nameOf(file.name);
+  try {
+    await upload(viewer.connection.address.url(`api/v1/images/${name}`), file, (fraction) => {
+      viewer.loading.start({ kind: "texture", name, stage: "uploading", fraction, by: "" });
+    });
+    return name;
+  } catch (error) {
+    viewer.loading.end();
+    toasts.show((error as Error).message, {
+      topic: "scene",
+      detail: (error as UploadError).detail,
+    });
+    return null;
+  }
+}
+
 class UploadError extends Error {
   readonly detail: string;
 
@@ -96,8 +124,23 @@ function uploadError(viewer: Viewer): string | null {
 /** Why this file cannot be uploaded, as far as is known before sending it. */
 function fileError(viewer: Viewer, file: File): string | null {
   if (!/\.(glb|hdr|exr)$/i.test(file.name)) {
-    return "Only .glb files, which contain all buffers and images, and environments (.hdr, .exr) can be uploaded";
+    return isImage(file)
+      ? "Drop an image on a texture of a material, in the panel"
+      : "Only .glb files, which contain all buffers and images, and environments (.hdr, .exr) can be uploaded";
   }
+  return sizeError(viewer, file);
+}
+
+function imageError(viewer: Viewer, file: File): string | null {
+  if (!isImage(file)) return "Textures are images: PNG, JPEG, WebP or KTX2 files";
+  return sizeError(viewer, file);
+}
+
+function isImage(file: File): boolean {
+  return /\.(png|jpe?g|webp|ktx2)$/i.test(file.name);
+}
+
+function sizeError(viewer: Viewer, file: File): string | null {
   const limit = viewer.hello?.limits.max_upload_bytes ?? Infinity;
   if (file.size > limit) {
     const [size, most] = [formatSize(file.size), formatSize(limit)];

@@ -25,6 +25,8 @@ interface PanelActions {
   camera: CameraTools;
   /** Uploads a scene file and loads it. */
   upload(file: File): void;
+  /** Uploads an image; its name on the server, null where it was not taken. */
+  uploadImage(file: File): Promise<string | null>;
   help(): void;
   fullscreen: (() => void) | null;
 }
@@ -50,7 +52,7 @@ export function mountPanel(root: HTMLElement, viewer: Viewer, actions: PanelActi
       id: "scene",
       label: "Scene",
       icon: "scene",
-      body: createSceneTab(viewer, actions.selection, actions.camera, actions.upload),
+      body: createSceneTab(viewer, actions.selection, actions.camera, actions),
     },
     {
       id: "settings",

@@ -47,6 +47,8 @@ function deedOf(method: string, change: Change, schema: ControlGroup): string | 
       return `changed the light ${change.light?.name}`;
     case "materials.changed":
       return `changed the material ${change.material?.name}`;
+    case "textures.changed":
+      return "changed a texture";
     case "environment.changed":
       return change.current
         ? `chose the environment ${change.current}`

@@ -9,6 +9,7 @@ import type { Marks } from "./marks/marks.ts";
 import type { NodeStore } from "./node_store.ts";
 import type { SceneLoading } from "./scene_loading.ts";
 import type { SceneParts } from "./scene_parts.ts";
+import type { Textures } from "./edits/textures.ts";
 import type { SectionStore } from "./section_store.ts";
 import type { SettingsStore } from "./settings_store.ts";
 import type { ShownScene } from "./shown_scene.ts";
@@ -18,6 +19,7 @@ import type { ViewRestore } from "./view_restore.ts";
 interface Targets {
   settings: SettingsStore;
   parts: SceneParts;
+  textures: Textures;
   nodes: NodeStore;
   section: SectionStore;
   shown: ShownScene;
@@ -70,8 +72,14 @@ export function receiveNotification(targets: Targets, method: string, params: un
     case "lights.changed":
     case "materials.changed":
     case "environment.changed":
+      targets.parts.notified(method, params);
+      break;
     case "edits.changed":
       targets.parts.notified(method, params);
+      targets.textures.notified(params as Notifications["edits.changed"]);
+      break;
+    case "textures.changed":
+      targets.textures.notified(params as Notifications["textures.changed"]);
       break;
     case "nodes.changed":
     case "selection.changed":

@@ -18,7 +18,7 @@ export interface Part {
 
 /** Limits of what fits into a link. */
 export const maxEdits = 64;
-const maxMembers = 24;
+const maxMembers = 32;
 const maxNameLength = 256;
 
 /** The patches that lead from the file to these parts; undefined where the server does not tell. */

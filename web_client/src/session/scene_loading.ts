@@ -9,13 +9,15 @@ import type { UndoHistory } from "./history/undo_history.ts";
 import type { ViewState } from "./view_state.ts";
 
 export interface Loading {
-  kind: "scene" | "environment";
+  kind: "scene" | "environment" | "texture";
   name: string;
   stage: string;
   /** In [0, 1]. */
   fraction: number;
   /** The viewer that loads it. */
   by: string;
+  /** Whether the newest frame shows it already, without its textures. */
+  firstView?: boolean;
 }
 
 /** One of several scenes of a file, and its material variant. */
@@ -48,6 +50,8 @@ export class SceneLoading {
   private readonly host: SceneLoadingHost;
   private newestRev = 0;
   private awaitedRev = 0;
+  /** The newest revision before frames that show the scene without its textures. */
+  private revBeforeFirstView: number | null = null;
 
   constructor(host: SceneLoadingHost) {
     this.host = host;
@@ -83,9 +87,18 @@ export class SceneLoading {
     this.current.set(loading);
   }
 
-  progressed({ name, stage, fraction, by }: SceneProgress): void {
-    if (!finalStages.includes(stage)) this.start({ kind: "scene", name, stage, fraction, by });
-    else if (stage !== "ready") this.end();
+  progressed({ name, stage, fraction, first_view, by }: SceneProgress): void {
+    if (finalStages.includes(stage)) {
+      if (stage !== "ready") this.end();
+      return;
+    }
+    if (first_view) this.revBeforeFirstView ??= this.newestRev;
+    else this.revBeforeFirstView = null;
+    this.start({ kind: "scene", name, stage, fraction, by, firstView: this.seesFirstView() });
+  }
+
+  private seesFirstView(): boolean {
+    return this.revBeforeFirstView !== null && this.newestRev > this.revBeforeFirstView;
   }
 
   /** It is in effect from this revision of the session on: waits for a frame of it. */
@@ -99,11 +112,16 @@ export class SceneLoading {
 
   frameDrawn(stateRev: number): void {
     this.newestRev = stateRev;
+    const { value } = this.current;
     if (this.awaitedRev > 0 && stateRev >= this.awaitedRev) this.end();
+    else if (value && !value.firstView && this.seesFirstView()) {
+      this.current.set({ ...value, firstView: true });
+    }
   }
 
   end(): void {
     this.awaitedRev = 0;
+    this.revBeforeFirstView = null;
     if (this.current.value) this.current.set(null);
   }
 

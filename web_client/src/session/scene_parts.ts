@@ -144,6 +144,7 @@ export class SceneParts {
   private async sendEdits(edits: EditDocument): Promise<boolean> {
     const answer = await this.attempt("edits.apply", { edits }, loadTimeoutMs);
     if (!answer) return false;
+    this.host.loading.takesEffect(answer.rev); // other textures are loaded
     await this.read();
     this.host.shows(answer.edits);
     return true;

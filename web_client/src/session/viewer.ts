@@ -24,6 +24,7 @@ import { receiveNotification } from "./notifications.ts";
 import { OwnSession } from "./own_session.ts";
 import { SceneLoading } from "./scene_loading.ts";
 import { SceneParts } from "./scene_parts.ts";
+import { Textures } from "./edits/textures.ts";
 import { ServerCapabilities } from "./server_capabilities.ts";
 import { SectionStore } from "./section_store.ts";
 import { SessionRestore } from "./session_restore.ts";
@@ -44,6 +45,7 @@ export class Viewer {
   readonly settings: SettingsStore;
   readonly capabilities: ServerCapabilities;
   readonly parts: SceneParts;
+  readonly textures: Textures;
   readonly nodes: NodeStore;
   readonly section: SectionStore;
   readonly handles: HandleChoice;
@@ -163,6 +165,14 @@ export class Viewer {
     });
     this.settings = new SettingsStore(this.rpc, this.history, (error) => this.report(error));
     this.capabilities = new ServerCapabilities(this.rpc);
+    this.textures = new Textures({
+      rpc: this.rpc,
+      scene: this.scene,
+      capabilities: this.capabilities,
+      history: this.history,
+      loading: this.loading,
+      report: (error) => this.report(error),
+    });
     this.parts = new SceneParts({
       rpc: this.rpc,
       scene: this.scene,
@@ -172,6 +182,7 @@ export class Viewer {
       shows: (edits) => {
         this.nodes.notified("nodes.changed", edits);
         void this.section.read();
+        void this.textures.read();
       },
       report: (error) => this.report(error),
     });

@@ -86,6 +86,16 @@ std::vector<std::uint8_t> GltfFile::resource(const std::string& place) {
   }
 }
 
+std::uint64_t GltfFile::resource_bytes(const std::string& place) const {
+  const std::string& uri = address(place);
+  if (uri.starts_with("data:")) return uri.size() / 4 * 3;
+  try {
+    return folder_.size_of(decode_file_uri(uri));
+  } catch (const ImportError&) {
+    return 0;  // reading it tells why
+  }
+}
+
 void GltfFile::read_buffers() {
   image_views_.resize(model_.bufferViews.size());
   buffers_.resize(document_.buffer_lengths.size());
@@ -149,6 +159,16 @@ std::vector<std::uint8_t> GltfFile::image_file(std::uint32_t view) const {
   std::vector<std::uint8_t> bytes(source.byteLength);
   container_.read_binary(source.byteOffset, bytes, stop_);
   return bytes;
+}
+
+void GltfFile::drop_views() {
+  for (const tinygltf::Image& image : model_.images) {
+    const auto view = to_index(image.bufferView);
+    if (view && !image_views_[*view]) return;
+  }
+  views_.assign(views_.size(), {});
+  unpacked_views_.clear();
+  buffers_.clear();
 }
 
 void GltfFile::read_views(const ImportLimits& limits) {

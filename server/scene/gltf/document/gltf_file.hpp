@@ -47,9 +47,14 @@ class GltfFile {
   const std::vector<BufferView>& views() const { return views_; }
   /// The file of an image within a view. @throws ImportError, LoadCancelled
   std::vector<std::uint8_t> image_file(std::uint32_t view) const;
+  /// Frees what was read for views, unless files of images are among it: accessors are not read any
+  /// more.
+  void drop_views();
   /// Bytes behind the "uri" of the object at `place`: base64 data or a file beside the scene.
   /// @throws ImportError
   std::vector<std::uint8_t> resource(const std::string& place);
+  /// About how many these are, without reading them; 0 where they cannot be read.
+  std::uint64_t resource_bytes(const std::string& place) const;
   /// The "uri" of the object at `place`, unless it was base64 data that resource() has returned.
   const std::string& address(const std::string& place) const { return document_.uris.at(place); }
   /// The file itself and all files read with it, as they were before reading.

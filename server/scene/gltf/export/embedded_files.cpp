@@ -19,29 +19,18 @@ using nlohmann::json;
 // Of every buffer and image, so that accessors stay aligned.
 constexpr std::size_t chunk_alignment = 8;
 
-/// The MIME type of an image by its first bytes; those of glTF and its extensions.
-std::string_view mime_type_of(std::span<const std::uint8_t> file) {
-  using namespace std::string_view_literals;
-  const std::string_view start(reinterpret_cast<const char*>(file.data()),
-                               std::min<std::size_t>(file.size(), 16));
-  if (start.starts_with("\x89PNG"sv)) return "image/png";
-  if (start.starts_with("\xff\xd8"sv)) return "image/jpeg";
-  if (start.starts_with("RIFF"sv) && start.substr(8).starts_with("WEBP"sv)) return "image/webp";
-  if (start.starts_with("\xabKTX 20"sv)) return "image/ktx2";
-  return "application/octet-stream";
-}
-
 class Embedding {
  public:
   Embedding(GltfFile& file, EditableDocument& document, const ImportLimits& limits)
       : file_(file), document_(document), most_(limits.file_bytes) {}
 
-  std::vector<std::uint8_t> embed() {
+  std::vector<std::uint8_t> embed(std::span<const AddedImage> added) {
     json buffers = document_.list("buffers");
     for (std::size_t i = 0; i < buffers.size(); ++i) join(i, buffers[i]);
     for (json& view : document_.list("bufferViews")) relocate(view);
     json& images = document_.list("images");
     for (std::size_t i = 0; i < images.size(); ++i) embed_image(i);
+    for (const AddedImage& image : added) put(image.image, image.file);
     json joined = json::array();
     if (!bytes_.empty()) joined.push_back({{"byteLength", bytes_.size()}});
     for (json& placeholder : placeholders_) joined.push_back(std::move(placeholder));
@@ -113,13 +102,17 @@ class Embedding {
       document_.list("images")[index]["uri"] = file_.address(place);
       return document_.warn(std::string(error.what()) + ": the image stays outside the file");
     }
+    document_.list("images")[index].erase("uri");
+    put(index, file);
+  }
+
+  void put(std::size_t index, std::span<const std::uint8_t> file) {
     const std::span<std::uint8_t> part = grow(file.size());
     std::ranges::copy(file, part.begin());
     const std::size_t view = document_.append(
         "bufferViews",
         {{"buffer", 0}, {"byteOffset", offset_of(part)}, {"byteLength", part.size()}});
     json& image = document_.list("images")[index];
-    image.erase("uri");
     image["bufferView"] = view;
     if (!image.contains("mimeType")) image["mimeType"] = mime_type_of(file);
   }
@@ -134,9 +127,21 @@ class Embedding {
 
 }  // namespace
 
+std::string_view mime_type_of(std::span<const std::uint8_t> file) {
+  using namespace std::string_view_literals;
+  const std::string_view start(reinterpret_cast<const char*>(file.data()),
+                               std::min<std::size_t>(file.size(), 16));
+  if (start.starts_with("\x89PNG"sv)) return "image/png";
+  if (start.starts_with("\xff\xd8"sv)) return "image/jpeg";
+  if (start.starts_with("RIFF"sv) && start.substr(8).starts_with("WEBP"sv)) return "image/webp";
+  if (start.starts_with("\xabKTX 20"sv)) return "image/ktx2";
+  return "application/octet-stream";
+}
+
 std::vector<std::uint8_t> embed_files(GltfFile& file, EditableDocument& document,
+                                      std::span<const AddedImage> added,
                                       const ImportLimits& limits) {
-  return Embedding(file, document, limits).embed();
+  return Embedding(file, document, limits).embed(added);
 }
 
 }  // namespace heliograph::scene

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <ostream>
+#include <utility>
 
 #include "scene/gltf/document/accessors.hpp"
 #include "scene/gltf/document/gltf_file.hpp"
@@ -15,6 +16,7 @@
 #include "scene/gltf/export/light_export.hpp"
 #include "scene/gltf/export/material_export.hpp"
 #include "scene/gltf/export/node_export.hpp"
+#include "scene/gltf/export/texture_export.hpp"
 #include "scene/gltf/nodes/nodes.hpp"
 #include "scene/warnings.hpp"
 
@@ -26,8 +28,11 @@ constexpr std::uint64_t container_bytes = 64;
 
 /// Files that were read for the scene and for its export.
 void check_unchanged(std::vector<SourceFile> before, std::vector<SourceFile> now) {
-  std::ranges::sort(before, {}, &SourceFile::path);
-  std::ranges::sort(now, {}, &SourceFile::path);
+  for (std::vector<SourceFile>* const files : {&before, &now}) {
+    std::ranges::sort(*files, {}, &SourceFile::path);
+    const auto repeated = std::ranges::unique(*files);
+    files->erase(repeated.begin(), repeated.end());
+  }
   if (before != now) {
     throw ImportError("the scene's files have changed since it was loaded: load it again");
   }
@@ -65,11 +70,14 @@ std::vector<std::string> write_changed(const Scene& scene, const SceneChanges& c
   const auto nodes = find_document_nodes(file, scene, shown, limits, stop);
   EditableDocument document(file.take_document(), shown, warnings);
   export_variant(document, scene);
+  const TextureExport textures = export_textures(document, scene, limits, stop);
   export_materials(document, scene, changes);
   export_lights(document, scene, nodes, changes.lights);
   export_hidden(document, scene, nodes, changes.hidden);
-  const std::vector<std::uint8_t> binary = embed_files(file, document, limits);
-  check_unchanged(scene.sources, file.sources());
+  const std::vector<std::uint8_t> binary = embed_files(file, document, textures.images, limits);
+  std::vector<SourceFile> read = file.sources();
+  read.insert(read.end(), textures.files.begin(), textures.files.end());
+  check_unchanged(scene.sources, std::move(read));
   throw_if_cancelled(stop);
   const std::string text = document.take().dump();
   const std::uint64_t most =

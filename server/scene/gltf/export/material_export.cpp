@@ -132,6 +132,16 @@ void write_extensions(EditableDocument& document, json& material, const Material
   write_extension(document, material, "KHR_materials_sheen", now.sheen_color != glm::vec3(0.0f),
                   {{"sheenColorFactor", triple(now.sheen_color)},
                    {"sheenRoughnessFactor", now.sheen_roughness}});
+  write_extension(document, material, "KHR_materials_iridescence", now.iridescence > 0.0f,
+                  {{"iridescenceFactor", now.iridescence},
+                   {"iridescenceIor", now.iridescence_ior},
+                   {"iridescenceThicknessMinimum", now.iridescence_thickness_minimum},
+                   {"iridescenceThicknessMaximum", now.iridescence_thickness_maximum}});
+  write_extension(
+      document, material, "KHR_materials_anisotropy", now.anisotropy > 0.0f,
+      {{"anisotropyStrength", now.anisotropy}, {"anisotropyRotation", now.anisotropy_rotation}});
+  write_extension(document, material, "KHR_materials_dispersion", now.dispersion > 0.0f,
+                  {{"dispersion", now.dispersion}});
   write_extension(document, material, "KHR_materials_transmission", now.transmission > 0.0f,
                   {{"transmissionFactor", now.transmission}});
   write_volume(document, material, now);
@@ -146,6 +156,11 @@ bool differs_in_factors(const shared::Material& a, const shared::Material& b) {
 }
 
 }  // namespace
+
+json& material_of(EditableDocument& document, std::size_t index) {
+  const bool in_file = index < document.list("materials").size();
+  return in_file ? document.list("materials")[index] : add_default_material(document);
+}
 
 void export_variant(EditableDocument& document, const Scene& scene) {
   if (!scene.variant) return;
@@ -167,8 +182,7 @@ void export_materials(EditableDocument& document, const Scene& scene, const Scen
     const shared::Material& now = changes.materials.empty() ? before : changes.materials[i];
     const bool extended = i < changes.extensions.size() && changes.extensions[i];
     if (!extended && !differs_in_factors(before, now)) continue;
-    const bool in_file = i < document.list("materials").size();
-    json& material = in_file ? document.list("materials")[i] : add_default_material(document);
+    json& material = material_of(document, i);
     write_material(document, material, scene.material_names[i], before, now);
     if (extended) write_extensions(document, material, *changes.extensions[i]);
   }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "scene/first_failure.hpp"
 #include "scene/gltf/document/extension_value.hpp"
@@ -143,6 +144,20 @@ std::vector<std::uint32_t> ImageUse::sources() const {
   if (conversion->diffuse) result.push_back(*conversion->diffuse);
   if (conversion->specular) result.push_back(*conversion->specular);
   return result;
+}
+
+std::uint64_t image_file_bytes(const GltfFile& file) {
+  std::uint64_t bytes = 0;
+  std::set<std::uint32_t> counted;  // views
+  const std::vector<tinygltf::Image>& images = file.model().images;
+  for (std::size_t i = 0; i < images.size(); ++i) {
+    if (const auto view = to_index(images[i].bufferView)) {
+      if (counted.insert(*view).second) bytes += file.model().bufferViews[*view].byteLength;
+    } else {
+      bytes += file.resource_bytes(item_path("", "images", i));
+    }
+  }
+  return bytes;
 }
 
 std::vector<ImageSource> read_image_sources(GltfFile& file, const ImportLimits& limits,

@@ -44,6 +44,9 @@ struct ImageUse {
   std::vector<std::uint32_t> sources() const;
 };
 
+/// Bytes of the files of all images, none of which is read for it; 0 for those that are missing.
+std::uint64_t image_file_bytes(const GltfFile& file);
+
 /// @throws ImportError, LoadCancelled
 std::vector<ImageSource> read_image_sources(GltfFile& file, const ImportLimits& limits,
                                             const std::stop_token& stop);

@@ -1,6 +1,7 @@
 #include "scene/gltf/materials/textures.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "scene/gltf/document/extension_value.hpp"
 
@@ -54,13 +55,58 @@ TextureTable::TextureTable(const tinygltf::Model& model) {
 std::uint32_t TextureTable::use(std::uint32_t index, bool srgb) {
   const Declared& declared = textures_[index];
   if (!declared.image) return shared::no_texture;
-  const auto [image, new_image] = image_of_use_.try_emplace(
-      {*declared.image, srgb}, static_cast<std::uint32_t>(image_uses_.size()));
-  if (new_image) image_uses_.push_back({*declared.image, srgb});
+  const std::uint32_t image = use_image(*declared.image, srgb);
   const auto [texture, new_texture] =
       texture_of_use_.try_emplace({index, srgb}, static_cast<std::uint32_t>(used_textures_.size()));
-  if (new_texture) used_textures_.push_back({image->second, declared.sampler});
+  if (new_texture) used_textures_.push_back({image, declared.sampler});
   return texture->second;
+}
+
+std::uint32_t TextureTable::use_image(std::uint32_t source, bool srgb) {
+  const auto [image, is_new] =
+      image_of_use_.try_emplace({source, srgb}, static_cast<std::uint32_t>(image_uses_.size()));
+  if (is_new) image_uses_.push_back({source, srgb});
+  return image->second;
+}
+
+std::uint32_t TextureTable::use_other(std::uint32_t source, bool srgb, const Sampler& sampler) {
+  const Texture texture{use_image(source, srgb), sampler};
+  const auto known = std::ranges::find_if(used_textures_, [&](const Texture& used) {
+    return used.image == texture.image && used.sampler == texture.sampler;
+  });
+  if (known != used_textures_.end()) {
+    return static_cast<std::uint32_t>(known - used_textures_.begin());
+  }
+  used_textures_.push_back(texture);
+  return static_cast<std::uint32_t>(used_textures_.size() - 1);
+}
+
+void TextureTable::keep_only(std::span<shared::TextureSlot* const> slots) {
+  std::map<std::uint32_t, std::uint32_t> textures;  // new numbers by old ones
+  std::map<std::uint32_t, std::uint32_t> images;
+  for (const shared::TextureSlot* const slot : slots) {
+    if (slot->texture == shared::no_texture) continue;
+    textures[slot->texture] = 0;
+    images[used_textures_[slot->texture].image] = 0;
+  }
+  std::vector<ImageUse> kept_uses;
+  for (auto& [before, now] : images) {
+    now = static_cast<std::uint32_t>(kept_uses.size());
+    kept_uses.push_back(image_uses_[before]);
+  }
+  std::vector<Texture> kept_textures;
+  for (auto& [before, now] : textures) {
+    now = static_cast<std::uint32_t>(kept_textures.size());
+    const Texture& texture = used_textures_[before];
+    kept_textures.push_back({images.at(texture.image), texture.sampler});
+  }
+  for (shared::TextureSlot* const slot : slots) {
+    if (slot->texture != shared::no_texture) slot->texture = textures.at(slot->texture);
+  }
+  image_uses_ = std::move(kept_uses);
+  used_textures_ = std::move(kept_textures);
+  image_of_use_.clear();
+  texture_of_use_.clear();
 }
 
 std::uint32_t TextureTable::use_converted(ConvertedImage kind, const SpecularGlossiness& factors,

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -30,6 +31,12 @@ class TextureTable {
                               std::optional<std::uint32_t> diffuse,
                               std::optional<std::uint32_t> specular);
 
+  /// A scene texture of an image that is not the document's: `source` is behind its images.
+  std::uint32_t use_other(std::uint32_t source, bool srgb, const Sampler& sampler);
+
+  /// Drops textures and images that no slot uses any more; `slots` are all that there are.
+  void keep_only(std::span<shared::TextureSlot* const> slots);
+
   const std::vector<ImageUse>& image_uses() const { return image_uses_; }
   const std::vector<Texture>& used_textures() const { return used_textures_; }
 
@@ -40,6 +47,8 @@ class TextureTable {
   };
 
   std::vector<Declared> textures_;
+  std::uint32_t use_image(std::uint32_t source, bool srgb);
+
   std::map<std::pair<std::uint32_t, bool>, std::uint32_t> image_of_use_;
   std::map<std::pair<std::uint32_t, bool>, std::uint32_t> texture_of_use_;
   std::vector<ImageUse> image_uses_;

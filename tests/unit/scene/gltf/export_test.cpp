@@ -248,6 +248,10 @@ TEST(GlbExport, FactorsOfExtensionsAreWrittenWhereTheyDoSomething) {
   layers.clearcoat = 0.75f;
   layers.clearcoat_roughness = 0.25f;
   layers.sheen_color = {0.5f, 0.25f, 0.0f};
+  layers.iridescence = 0.5f;
+  layers.iridescence_thickness_maximum = 512.0f;
+  layers.anisotropy = 0.375f;
+  layers.anisotropy_rotation = -1.1f;
   exported.changes.extensions = {layers};
   exported.write();
   ASSERT_FALSE(exported.after.material_layers.empty());
@@ -255,10 +259,16 @@ TEST(GlbExport, FactorsOfExtensionsAreWrittenWhereTheyDoSomething) {
   EXPECT_EQ(after.clearcoat, 0.75f);
   EXPECT_EQ(after.clearcoat_roughness, 0.25f);
   EXPECT_EQ(after.sheen_color, layers.sheen_color);
+  EXPECT_EQ(after.iridescence, 0.5f);
+  EXPECT_EQ(after.iridescence_ior, 1.3f);
+  EXPECT_EQ(after.iridescence_thickness_maximum, 512.0f);
+  EXPECT_EQ(after.anisotropy, 0.375f);
+  EXPECT_EQ(after.anisotropy_rotation, -1.1f);
   EXPECT_EQ(exported.after.materials[0].ior, 1.3f);
   const json extensions = exported.document().at("materials")[0].at("extensions");
   EXPECT_FALSE(extensions.contains("KHR_materials_volume"));
   EXPECT_FALSE(extensions.contains("KHR_materials_specular"));
+  EXPECT_FALSE(extensions.contains("KHR_materials_dispersion"));
   EXPECT_TRUE(exported.warnings.empty());
 }
 

@@ -3,12 +3,13 @@
 import type { MaterialInfo, MaterialPatch } from "heliograph/messages.ts";
 import { displayColour, linearColour } from "../../common/colour.ts";
 import { preferences } from "../../common/preferences.ts";
-import type { SceneParts } from "../../session/scene_parts.ts";
+import type { Viewer } from "../../session/viewer.ts";
 import { button, element, icon, setOptions } from "../../widgets/element.ts";
 import { field } from "../../widgets/field.ts";
 import { createSection } from "../../widgets/section.ts";
 import { createSliderRow } from "../../widgets/slider_row.ts";
 import { createMaterialRows } from "./material_rows.ts";
+import { createTextureRows } from "./texture_rows.ts";
 
 const sweepMs = 6000;
 const sweepStepMs = 100;
@@ -19,7 +20,11 @@ interface MaterialSection {
   choose(name: string): void;
 }
 
-export function createMaterialSection(parts: SceneParts): MaterialSection {
+export function createMaterialSection(
+  viewer: Viewer,
+  upload: (file: File) => Promise<string | null>,
+): MaterialSection {
+  const { parts } = viewer;
   const select = element("select", { name: "material", change: () => show() });
   const selected = (): MaterialInfo | undefined =>
     parts.materials.value.find(({ name }) => name === select.value) ?? parts.materials.value[0];
@@ -57,6 +62,9 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
     () => selected()?.roughness,
   );
   const rows = createMaterialRows(patch);
+  const textures = createTextureRows(viewer, upload);
+  const textureFold = createFold("material_textures", "Textures", [textures.node]);
+  viewer.textures.list.watch((list) => (textureFold.hidden = list === null));
   const body = element(
     "div",
     { class: "section-body" },
@@ -65,7 +73,8 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
     roughness.node,
     metallic.node,
     sweep,
-    createFold(rows.nodes),
+    createFold("material_factors", "Emission, coat, sheen and glass", rows.nodes),
+    textureFold,
   );
   const show = (): void => {
     const material = selected();
@@ -75,6 +84,7 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
     metallic.show(material.metallic);
     colour.value = displayColour(material.base_color);
     rows.show(material);
+    textures.show(material.name);
   };
   const node = createSection({ id: "materials", title: "Materials", body, openByDefault: false });
   parts.materials.watch((materials) => {
@@ -92,8 +102,8 @@ export function createMaterialSection(parts: SceneParts): MaterialSection {
   return { node, choose };
 }
 
-function createFold(nodes: HTMLElement[]): HTMLElement {
-  const key = "open.material_factors";
+function createFold(id: string, title: string, nodes: HTMLElement[]): HTMLElement {
+  const key = `open.${id}`;
   const fold = element(
     "details",
     {
@@ -101,7 +111,7 @@ function createFold(nodes: HTMLElement[]): HTMLElement {
       open: preferences.flag(key, false),
       toggle: () => preferences.setFlag(key, fold.open),
     },
-    element("summary", {}, icon("chevron"), element("h3", {}, "Emission, coat, sheen and glass")),
+    element("summary", {}, icon("chevron"), element("h3", {}, title)),
     ...nodes,
   );
   return fold;

@@ -22,11 +22,16 @@ import { shadingModes } from "./shading_modes.ts";
 /** Groups of settings that are shown here instead of in the Settings tab. */
 export const appearanceGroups = ["lens", "exposure", "tone_map", "environment", "background"];
 
+interface Uploads {
+  upload(this: void, file: File): void;
+  uploadImage(this: void, file: File): Promise<string | null>;
+}
+
 export function createSceneTab(
   viewer: Viewer,
   picker: PointPicker,
   camera: CameraTools,
-  upload: (file: File) => void,
+  { upload, uploadImage }: Uploads,
 ): HTMLElement {
   const facts = element("p", { class: "facts" });
   const warnings = element("details", { class: "warnings", hidden: true });
@@ -54,7 +59,7 @@ export function createSceneTab(
     createPlanesSection(viewer),
     createLightSection(viewer),
     appearance,
-    createMaterialSection(viewer.parts).node,
+    createMaterialSection(viewer, uploadImage).node,
     createEditsSection(viewer),
   );
 }

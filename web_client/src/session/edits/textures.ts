@@ -1,0 +1,118 @@
+// The textures of the scene's materials, and the uploaded images that can take their place.
+
+import type { Methods, SceneInfo } from "heliograph/messages.ts";
+import type { RpcPeer } from "heliograph/rpc.ts";
+import { humanise } from "heliograph/settings_schema.ts";
+import { Signal } from "../../common/signal.ts";
+import type { UndoHistory } from "../history/undo_history.ts";
+
+const loadTimeoutMs = 600_000;
+
+type TextureList = Methods["textures.list"]["result"];
+export type Texture = TextureList["textures"][number];
+type Image = Methods["images.list"]["result"]["images"][number];
+/** What a slot is to have: an image of the server, the texture of the file, or none. */
+export type TextureChoice = { image: string | null } | { removed: true };
+
+interface Loading {
+  kind: "texture";
+  name: string;
+  stage: string;
+  fraction: number;
+  by: string;
+}
+
+interface TexturesHost {
+  rpc: RpcPeer;
+  scene: Signal<SceneInfo | null>;
+  capabilities: { methods: Signal<ReadonlySet<string>>; has(method: string): boolean };
+  history: UndoHistory;
+  loading: {
+    start(loading: Loading): void;
+    takesEffect(rev: number): void;
+    end(): void;
+  };
+  report(error: unknown): void;
+}
+
+export class Textures {
+  readonly list = new Signal<TextureList | null>(null);
+  readonly images = new Signal<Image[]>([]);
+  private readonly host: TexturesHost;
+
+  constructor(host: TexturesHost) {
+    this.host = host;
+    host.scene.watch(() => void this.read());
+    host.capabilities.methods.watch(() => void this.read());
+  }
+
+  /** The slot of a material; nothing where it is empty in the file and unchanged. */
+  find(material: string, slot: string): Texture | undefined {
+    return this.list.value?.textures.find((one) => one.material === material && one.slot === slot);
+  }
+
+  /** Changes a slot, as a step of the history. Whether the server takes it. */
+  async choose(material: string, slot: string, choice: TextureChoice): Promise<boolean> {
+    const before = choiceOf(this.find(material, slot));
+    if (!(await this.send(material, slot, choice))) return false;
+    const label = `${humanise(slot).toLowerCase()} texture of ${material}`;
+    this.host.history.add({
+      label,
+      key: `${label} ${JSON.stringify(choice)}`,
+      ofScene: true,
+      undo: () => void this.send(material, slot, before),
+      redo: () => void this.send(material, slot, choice),
+    });
+    return true;
+  }
+
+  /** Another viewer has changed textures: what shows them is in effect from this revision on. */
+  notified({ rev }: { rev: number }): void {
+    this.host.loading.takesEffect(rev);
+    void this.read();
+  }
+
+  async read(): Promise<void> {
+    if (!this.host.scene.value || !this.host.capabilities.has("textures.list")) return;
+    try {
+      const [list, { images }] = await Promise.all([
+        this.host.rpc.request("textures.list", {}),
+        this.host.rpc.request("images.list", {}),
+      ]);
+      this.images.set(images);
+      this.list.set(list);
+    } catch {
+      this.list.set(null); // no scene or no connection: it is read again with the next one
+    }
+  }
+
+  private async send(material: string, slot: string, choice: TextureChoice): Promise<boolean> {
+    const { loading, rpc } = this.host;
+    const name = `the ${humanise(slot).toLowerCase()} texture`;
+    loading.start({ kind: "texture", name, stage: "loading", fraction: 0, by: "" });
+    try {
+      const state = await rpc.request("textures.set", { material, slot, ...choice }, loadTimeoutMs);
+      loading.takesEffect(state.rev);
+      return true;
+    } catch (error) {
+      loading.end();
+      this.host.report(error);
+      return false;
+    } finally {
+      await this.read();
+    }
+  }
+}
+
+/** What leads to the slot as it is. */
+export function choiceOf(texture: Texture | undefined): TextureChoice {
+  if (texture?.removed) return { removed: true };
+  return { image: texture?.image ?? null };
+}
+
+/** What the file has in a slot, in words: "planks, 1024 × 1024". */
+export function describeFileTexture(texture: Texture | undefined): string {
+  if (texture?.file_image === undefined) return "none";
+  const size = texture.width > 0 ? `${texture.width} × ${texture.height}` : "cannot be read";
+  return texture.file_image ? `${texture.file_image}, ${size}` : size;
+}
