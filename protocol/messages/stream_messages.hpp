@@ -173,7 +173,10 @@ struct StatsFrame {
         field("goodput", &StatsFrame::goodput,
               "Measured throughput to this viewer while frames are in flight.")
             .unit("bytes per second"),
-        field("passes", &StatsFrame::passes, "The frame's passes in execution order."),
+        field("passes", &StatsFrame::passes,
+              "The passes in the order declared. GPUs time them in one frame of sixteen, and where "
+              "one "
+              "runs that was never timed; frames between repeat the newest times."),
     };
   }
   bool operator==(const StatsFrame&) const = default;

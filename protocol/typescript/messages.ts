@@ -1727,7 +1727,10 @@ export interface FrameStats {
   goodput: number;
   /** Frame height. [pixels] */
   height: number;
-  /** The frame's passes in execution order. */
+  /**
+   * The passes in the order declared. GPUs time them in one frame of sixteen, and where one runs
+   * that was never timed; frames between repeat the newest times.
+   */
   passes: PassTiming[];
   /** Quality of moving frames chosen for this viewer. */
   quality: number;

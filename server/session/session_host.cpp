@@ -297,11 +297,12 @@ void SessionHost::load_scene(std::shared_ptr<Session> session, const protocol::S
 void SessionHost::set_texture(const std::shared_ptr<Session>& session,
                               const protocol::TextureSet& request, const std::string& by,
                               protocol::Completion<protocol::TextureState> done) {
+  // First: what was pending may be shown by then.
+  const auto pending = loader_.pending_textures(*session);
   const auto shown = session->scene().shown();
   if (!shown) return done(shown.error());
   const auto slot = check_slot(*shown->scene, request.material, request.slot);
   if (!slot) return done(slot.error());
-  const auto pending = loader_.pending_textures(*session);
   const auto textures =
       with_change(pending ? *pending : overrides_of(*shown->scene), request, images_);
   if (!textures) return done(textures.error());
@@ -315,13 +316,15 @@ void SessionHost::set_texture(const std::shared_ptr<Session>& session,
 void SessionHost::apply_edits(const std::shared_ptr<Session>& session,
                               const protocol::EditDocument& document, const std::string& by,
                               std::function<void(Result<void>)> done) {
+  // First: what was pending may be shown by then.
+  const auto pending = loader_.pending_textures(*session);
   const auto shown = session->scene().shown();
   if (!shown) return done(shown.error());
-  const auto textures = overrides_of(document, images_);
-  if (!textures) return done(textures.error());
   const auto fit = check_slots(*shown->scene, document);
   if (!fit) return done(fit.error());
-  if (*textures == overrides_of(*shown->scene) && !loader_.pending_textures(*session)) {
+  const auto textures = overrides_of(document, images_);
+  if (!textures) return done(textures.error());
+  if (*textures == overrides_of(*shown->scene) && !pending) {
     return done(session->scene().apply_edits(document, by));
   }
   loader_.load_textures(session, *textures, document, by,

@@ -22,15 +22,15 @@ layout(push_constant) uniform Constants {
   uint last_round;
 };
 
-/// What happens to `ray` at the boundary where it meets `s`. `weight`: what its light is multiplied
-/// by. @return whether it stays inside
-bool cross_boundary(inout Ray ray, HitSurface s, Boundary boundary, ivec2 pixel,
+/// What happens to `ray` at the boundary where it meets `s`. `medium`: that it has entered, whose
+/// band it has. `weight`: what its light is multiplied by. @return whether it stays inside
+bool cross_boundary(inout Ray ray, HitSurface s, Boundary boundary, uint medium, ivec2 pixel,
                     inout vec3 weight) {
   SurfaceMaterial m = material_of(s, ray.direction);
   uint dimension = boundary_dimension + 2u * round;
   float pick = random_number(uvec2(pixel), frame.sample_index, dimension, frame.seed);
   vec2 u = random_pair(uvec2(pixel), frame.sample_index, dimension + 1u, frame.seed);
-  float index = refraction_index(boundary.medium, pixel_band(boundary.medium, pixel));
+  float index = refraction_index(boundary.medium, pixel_band(medium, pixel));
   Departure d = sample_departure(s, m, index, pick, u);
   weight *= d.weight;
   // After the last boundary all light goes on as if nothing bent it.
@@ -59,7 +59,7 @@ void main() {
       float width = cone_width(camera_cone(), entered.t + hit.t);
       HitSurface s = hit_surface(hit, ray.direction, width);
       Boundary boundary = boundary_of(hit, s, ray.direction);
-      if (boundary.leaving) stays = cross_boundary(ray, s, boundary, pixel, weight);
+      if (boundary.leaving) stays = cross_boundary(ray, s, boundary, medium, pixel, weight);
     }
     uvec3 bits = floatBitsToUint(weight);
     ray.user = bits.r;

@@ -6,7 +6,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after } from "node:test";
 import { seriousFindings } from "./harness/axe.mjs";
-import { eventually, firstFrame, screenshot } from "./harness/browser.mjs";
+import { eventually, firstFrame, screenshot, unfoldAll } from "./harness/browser.mjs";
 import { sceneRoot } from "./harness/environment.mjs";
 import { Stage } from "./harness/stage.mjs";
 
@@ -74,6 +74,46 @@ open.test("a dropped file is uploaded, listed and loaded", async () => {
   await firstFrame(page);
   assert.equal(await page.locator("select[name=scene]").inputValue(), "My_mirror_1");
   await open.server.call("scene.load", { name: "shadow_objects" });
+});
+
+/** One red texel. */
+const redImage = Buffer.from(
+  "iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAYAAAAfFcSJAAAADUlEQVR42mP8z8BQDwAEhQGAhKmMIQAAAABJRU5ErkJggg==",
+  "base64",
+);
+
+open.test("an image replaces the texture of a material, by keyboard, and is undone", async () => {
+  const { page } = await open.watch();
+  await unfoldAll(page);
+  const [{ name: material }] = (await open.server.call("materials.list")).materials;
+  await page.locator("select[name=material]").selectOption(material);
+  const texture = async () =>
+    (await open.server.call("textures.list")).textures.find(
+      (one) => one.material === material && one.slot === "base_color",
+    );
+  const replaced = (image) =>
+    eventually(async () => (await texture())?.image === image, `the texture ${image}`, 60_000);
+  const replace = page.getByRole("button", { name: "Replace the base color texture by a file" });
+  const chooser = page.waitForEvent("filechooser");
+  await replace.press("Enter");
+  await (await chooser).setFiles({ name: "red.png", mimeType: "image/png", buffer: redImage });
+  await replaced("red");
+  const chosen = page.locator("select[name=texture_base_color]");
+  await eventually(async () => (await chosen.inputValue()) === "image red", "the chosen image");
+  await firstFrame(page);
+  await chosen.scrollIntoViewIfNeeded();
+  for (const scheme of ["dark", "light"]) {
+    await page.emulateMedia({ colorScheme: scheme });
+    await screenshot(page, `textures_${scheme}`);
+    assert.deepEqual(await seriousFindings(page), []);
+  }
+  const step = `base color texture of ${material}`;
+  await page.getByRole("button", { name: `Undo: ${step} (Ctrl Z)` }).click();
+  await replaced(undefined);
+  await page.getByRole("button", { name: `Redo: ${step} (Ctrl Shift Z)` }).click();
+  await replaced("red");
+  await page.getByRole("button", { name: "Restore the base color texture of the file" }).press("Enter");
+  await replaced(undefined);
 });
 
 open.test("a file can be uploaded by the file chooser", async () => {

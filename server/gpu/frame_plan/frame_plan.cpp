@@ -242,6 +242,7 @@ void FramePlan::compile() {
   queries.queryCount = static_cast<std::uint32_t>(passes_.size() * 2 + 1);
   check(vkCreateQueryPool(device_.handle(), &queries, nullptr, &queries_), "create the timers");
   for (const Pass& pass : passes_) timings_.push_back({pass.name, pass.is_host_only(), 0.0f});
+  measured_.assign(passes_.size(), -1.0f);
   if (read_back_.index != ImageRef().index) {
     for (Readback& readback : readbacks_) readback = Readback(device_, latest(read_back_));
   }

@@ -276,8 +276,8 @@ class FramePlan {
   /// finish() nothing of the plan changes and nothing is read.
   bool begin(const std::function<bool()>& canceled = {});
   /// Whether begin() may be called before finish(): where the device works on one frame, and the
-  /// passes of the next need not be timed. What the device reads, the host may not change then, but
-  /// for what is there for each slot().
+  /// next is not one of those that are timed. What the device reads, the host may not change then,
+  /// but for what is there for each slot().
   bool can_begin_another() const;
   /// The second part: waits for the device to finish the frame that has begun first.
   void finish();
@@ -291,8 +291,8 @@ class FramePlan {
   /// did not come back by itself, the device copies it now.
   std::vector<std::uint8_t> read();
   /// Of every pass, in the order declared; below 0 where it did not run. Devices that overlap
-  /// passes run them one after the other where they are timed: in one of sixteen frames, and in the
-  /// first with other passes. In frames between, the times are those of that frame.
+  /// passes run them one after the other where they are timed: in one of sixteen frames, and where
+  /// a pass runs that was never timed. In frames between, the times are the newest of each pass.
   const std::vector<PassTiming>& timings() const { return timings_; }
   /// The work behind the timings of the frame that just ran, in the same order. Copies counts back
   /// from the device: for measurements, not for every frame.
@@ -382,7 +382,6 @@ class FramePlan {
   void flush();  // both
   bool timing_is_due() const;
   void choose_timing();
-  std::vector<bool> running_passes() const;
   void read_timers();
   const Image& physical(std::uint32_t index, std::uint32_t parity) const;
   VkImageView physical_view(std::uint32_t index, std::uint32_t parity) const;
@@ -421,8 +420,8 @@ class FramePlan {
   std::deque<Begun> begun_;     // at most two, the older one first
   std::uint32_t finished_ = 1;  // slot of the frame that was finished last
   VkQueryPool queries_ = VK_NULL_HANDLE;
-  bool times_passes_ = false;       // by queries, in the frame that runs
-  std::vector<bool> timed_passes_;  // that ran in the newest frame with timers
+  bool times_passes_ = false;    // by queries, in the frame that runs
+  std::vector<float> measured_;  // milliseconds by pass when it was last timed; below 0: never
   std::uint32_t frames_since_timed_ = 0;
   std::vector<PassTiming> timings_;
   std::vector<View> views_;

@@ -66,7 +66,7 @@ bool FramePlan::begin(const std::function<bool()>& canceled) {
 }
 
 bool FramePlan::can_begin_another() const {
-  return begun_.size() == 1 && in_flight() && !timing_is_due();
+  return begun_.size() == 1 && in_flight() && frames_since_timed_ < timed_frame_interval;
 }
 
 void FramePlan::finish() {
@@ -83,17 +83,14 @@ bool FramePlan::wait_for(std::chrono::nanoseconds time) const {
   return !in_flight() || device_.wait_for(*begun_.front().submitted, time);
 }
 
-std::vector<bool> FramePlan::running_passes() const {
-  std::vector<bool> running(passes_.size());
-  std::transform(passes_.begin(), passes_.end(), running.begin(),
-                 [](const Pass& pass) { return !pass.condition || pass.condition(); });
-  return running;
-}
-
-/// Where passes run that did not in the frame that was timed last, or the other way round, nothing
-/// is known of their times.
+/// Or a pass runs that was never timed.
 bool FramePlan::timing_is_due() const {
-  return frames_since_timed_ >= timed_frame_interval || running_passes() != timed_passes_;
+  if (frames_since_timed_ >= timed_frame_interval) return true;
+  for (std::size_t i = 0; i < passes_.size(); ++i) {
+    const Pass& pass = passes_[i];
+    if (measured_[i] < 0.0f && pass.program && (!pass.condition || pass.condition())) return true;
+  }
+  return false;
 }
 
 /// Of the frame that begins. Timers are for one frame at a time.
@@ -102,7 +99,6 @@ void FramePlan::choose_timing() {
   ++frames_since_timed_;
   if (!times_passes_) return;
   frames_since_timed_ = 1;
-  timed_passes_ = running_passes();
   vkResetQueryPool(device_.handle(), queries_, 0, static_cast<std::uint32_t>(passes_.size() * 2));
 }
 
@@ -137,6 +133,7 @@ bool FramePlan::run_passes() {
       if (std::exchange(barrier, false) || times_passes_) full_barrier(recorder());
       record(pass, recorder(), i * 2);
       if (!timed_by_clock()) {
+        timings_[i].milliseconds = measured_[i];
         if (++recorded == passes_submitted_first) submit();
         continue;
       }
@@ -306,7 +303,8 @@ void FramePlan::read_timers() {
         device_.handle(), queries_, static_cast<std::uint32_t>(i * 2), 2, sizeof times,
         times.data(), sizeof(std::uint64_t), VK_QUERY_RESULT_64_BIT);
     if (result == VK_SUCCESS) {
-      timings_[i].milliseconds = static_cast<float>(times[1] - times[0]) * period;
+      measured_[i] = static_cast<float>(times[1] - times[0]) * period;
+      timings_[i].milliseconds = measured_[i];
     }
   }
 }

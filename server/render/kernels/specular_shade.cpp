@@ -54,7 +54,7 @@ class HitShading {
     }
     std::size_t count = 0;
     if (!none(hit.met)) {
-      travelled = select(hit.met, hn::Min(hit.t, travelled), travelled);
+      travelled = select(hit.met, hn::Min(hit.t, number(farthest_hit)), travelled);
       const Float roughness = reflector_roughness(pixel);
       const Float width = footprint(pixel, hit, roughness);
       const auto s = hit_surface<Surface, true>(job_.scene, hit, ray.direction, width);

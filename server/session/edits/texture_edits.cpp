@@ -1,6 +1,8 @@
 #include "session/edits/texture_edits.hpp"
 
 #include <algorithm>
+#include <map>
+#include <set>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -50,15 +52,47 @@ TextureInfo describe_slot(const scene::Scene& scene, std::size_t material, const
   return info;
 }
 
-/// @return an error of the member "image"
-Result<CatalogueEntry> find_image(const SceneCatalogue& catalogue, const std::string& name) {
-  const std::vector<CatalogueEntry> images = list_images(catalogue);
-  std::vector<std::string_view> names;
-  for (const CatalogueEntry& entry : images) {
-    if (entry.name == name || entry.name + entry.path.extension().string() == name) return entry;
-    names.push_back(entry.name);
+/// The images as they are on disk now.
+class Images {
+ public:
+  explicit Images(const SceneCatalogue& catalogue) : entries_(list_images(catalogue)) {
+    for (const CatalogueEntry& entry : entries_) {
+      by_name_.try_emplace(entry.name, &entry);
+      by_name_.try_emplace(entry.name + entry.path.extension().string(), &entry);
+    }
   }
-  return error::not_found("image", "is not one of the images" + protocol::suggestion(name, names));
+
+  const CatalogueEntry* find(const std::string& name) const {
+    const auto found = by_name_.find(name);
+    return found == by_name_.end() ? nullptr : found->second;
+  }
+  /// @return an error of the member "image"
+  Result<void> choose(const std::string& name, scene::TextureOverride& texture) const {
+    const CatalogueEntry* const image = find(name);
+    if (!image) {
+      std::vector<std::string_view> names;
+      for (const CatalogueEntry& entry : entries_) names.push_back(entry.name);
+      return error::not_found("image",
+                              "is not one of the images" + protocol::suggestion(name, names));
+    }
+    texture.name = image->name;
+    texture.image = image->path;
+    return {};
+  }
+
+ private:
+  std::vector<CatalogueEntry> entries_;
+  std::map<std::string, const CatalogueEntry*> by_name_;
+};
+
+/// An image of the same name may be another file by now. One that is gone is left out.
+void find_again(TextureOverrides& textures, const Images& images) {
+  std::erase_if(textures, [&](scene::TextureOverride& texture) {
+    if (texture.image.empty()) return false;
+    const CatalogueEntry* const image = images.find(texture.name);
+    if (image) texture.image = image->path;
+    return image == nullptr;
+  });
 }
 
 }  // namespace
@@ -127,20 +161,20 @@ Result<void> check_slots(const scene::Scene& scene, const protocol::EditDocument
 }
 
 Result<TextureOverrides> with_change(TextureOverrides textures, const protocol::TextureSet& change,
-                                     const SceneCatalogue& images) {
+                                     const SceneCatalogue& catalogue) {
   const bool asks = change.image.value || change.image.reset;
   if (asks == change.removed) {
     return error::invalid("image", asks ? "excludes removed"
                                         : "is missing: a name from "
                                           "images.list, null, or removed instead");
   }
+  const Images images(catalogue);
   scene::TextureOverride texture{change.material, change.slot, {}, {}};
   if (change.image.value) {
-    const auto image = find_image(images, *change.image.value);
-    if (!image) return image.error();
-    texture.name = image->name;
-    texture.image = image->path;
+    const Result<void> chosen = images.choose(*change.image.value, texture);
+    if (!chosen) return chosen.error();
   }
+  find_again(textures, images);
   std::erase_if(textures, [&](const scene::TextureOverride& other) {
     return is_of(other, change.material, change.slot);
   });
@@ -157,22 +191,21 @@ void describe_textures(const scene::Scene& scene, protocol::EditDocument& docume
 }
 
 Result<TextureOverrides> overrides_of(const protocol::EditDocument& document,
-                                      const SceneCatalogue& images) {
+                                      const SceneCatalogue& catalogue) {
   TextureOverrides textures;
+  if (document.textures.empty()) return textures;
+  const Images images(catalogue);
+  std::set<std::pair<std::string_view, std::string_view>> slots;
   for (const protocol::TextureEdit& edit : document.textures) {
     const std::string entry = "edits.textures[" + std::to_string(textures.size()) + "]";
-    if (std::ranges::any_of(textures, [&](const scene::TextureOverride& other) {
-          return is_of(other, edit.material, edit.slot);
-        })) {
+    if (!slots.emplace(edit.material, edit.slot).second) {
       return error::invalid(entry + ".slot", "is that of an earlier entry, too");
     }
     scene::TextureOverride& texture = textures.emplace_back();
     texture = {edit.material, edit.slot, {}, {}};
     if (!edit.image) continue;
-    const auto image = find_image(images, *edit.image);
-    if (!image) return below(image.error(), entry);
-    texture.name = image->name;
-    texture.image = image->path;
+    const Result<void> chosen = images.choose(*edit.image, texture);
+    if (!chosen) return below(chosen.error(), entry);
   }
   return canonical(std::move(textures));
 }

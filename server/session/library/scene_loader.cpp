@@ -167,8 +167,15 @@ void SceneLoader::enqueue(SceneKey key, const CatalogueEntry& entry, Waiter wait
     if (cached) {
       shown = show(waiter, *cached);
     } else {
-      if (job->first_view) show_first_view(*job, waiter);
-      job->waiters.push_back(std::move(waiter));
+      const auto own = std::ranges::find_if(job->waiters, [&](const Waiter& other) {
+        return other.session == waiter.session && other.variant == waiter.variant;
+      });
+      if (own != job->waiters.end()) {
+        ask_again(*own, std::move(waiter));
+      } else {
+        if (job->first_view) show_first_view(*job, waiter);
+        job->waiters.push_back(std::move(waiter));
+      }
     }
   }
   wake_->notify();

@@ -101,6 +101,7 @@ class SceneLoader {
     int device_losses = 0;  // during this load
   };
 
+  static void ask_again(Waiter& waiter, Waiter newer);
   static void join(Waiter& waiter, std::vector<Waiter>& replaced);
   void enqueue(SceneKey key, const CatalogueEntry& entry, Waiter waiter);
   void run();

@@ -32,6 +32,17 @@ std::optional<SceneLoader::Textures> SceneLoader::pending_textures(const Session
   return std::nullopt;
 }
 
+/// A session that asks again for what is being loaded is shown it once, as asked for last.
+void SceneLoader::ask_again(Waiter& waiter, Waiter newer) {
+  newer.sees_first_view = waiter.sees_first_view;
+  if (newer.variant && !newer.edits) newer.edits = std::move(waiter.edits);
+  newer.done = [first = std::move(waiter.done), then = std::move(newer.done)](auto outcome) {
+    first(outcome);
+    then(outcome);
+  };
+  waiter = std::move(newer);
+}
+
 /// Other textures add up: requests for them that this one replaces are answered with it.
 void SceneLoader::join(Waiter& waiter, std::vector<Waiter>& replaced) {
   if (!waiter.variant) return;

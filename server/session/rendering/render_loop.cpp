@@ -197,6 +197,7 @@ bool RenderLoop::advance_next(const Views& views) {
   }
   turns_.sort(ready);
   held_back_until_.reset();
+  others_wait_ = false;
   const auto moving = std::ranges::count_if(views, [](const auto& view) { return view->moves(); });
   if (moving > 0) moved_at_ = Clock::now();
   Views drawing;
@@ -223,6 +224,7 @@ bool RenderLoop::draw_in_turn(const std::shared_ptr<SessionView>& view) {
   const Clock::time_point start = Clock::now();
   const DeviceTurns::Contender contender{.view = view.get(), .refines = view->refines()};
   if (const auto until = turns_.hold_back(contender, start)) {
+    others_wait_ = true;
     held_back_until_ = held_back_until_ ? std::min(*held_back_until_, *until) : *until;
     return false;
   }
@@ -245,7 +247,8 @@ bool RenderLoop::finish_frame(bool alone) {
   SessionView& view = *finished->view;
   Clock::time_point followed{};
   const auto finish = [&] {
-    if (alone && view.can_begin_following()) view.begin_following_frame(device_free_);
+    if (alone && !others_wait_ && view.can_begin_following())
+      view.begin_following_frame(device_free_);
     followed = Clock::now();
     view.finish_frame(device_free_);
   };

@@ -118,6 +118,7 @@ class RenderLoop {
   RetryBackoff retry_backoff_;  // of the render thread, like the next ones
   Clock::time_point retry_at_;
   std::optional<Clock::time_point> held_back_until_;
+  bool others_wait_ = false;  // a view has a frame to draw, but not yet the turn
   /// The view whose frame the device works on: that of another one may begin meanwhile.
   struct InFlight {
     std::shared_ptr<SessionView> view;

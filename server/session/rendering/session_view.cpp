@@ -343,17 +343,19 @@ void SessionView::begin_next_frame() {
   if (in_flight() && !renderer_->in_flight()) finish_frame();
 }
 
-bool SessionView::can_begin_following() const {
+bool SessionView::can_begin_following() {
   return begun_.size() == 1 && begun_.front().view_state == ViewState::moving &&
          renderer_->can_begin_another() && readers_.empty() &&
          !session_->timeline().in_lockstep() && next_draw_scale() == draw_scale_ &&
          session_->viewers().can_accept_two_frames(device_time_) &&
+         wanted_jpeg(ViewState::moving) == begun_.front().jpeg &&
          !(session_->viewers().wants_depth() && depth_pays());
 }
 
 void SessionView::begin_following_frame(Clock::time_point device_free) {
-  const Clock::time_point expected =
-      std::max(begun_.front().start, device_free) + device_time_ - time_to_begin;
+  const BegunFrame& begun = begun_.front();
+  const Clock::time_point free = begun.follows ? frame_ended_at_ : device_free;
+  const Clock::time_point expected = std::max(begun.start, free) + device_time_ - time_to_begin;
   renderer_->wait_for(expected - Clock::now());
   readers_.collect();
   if (!can_begin_following()) return;
@@ -375,7 +377,8 @@ void SessionView::begin_frame(double seconds) {
   // A viewer that moves the camera does not wait for a frame of the view that it leaves.
   const ViewState view_state = next_view_state(view_inputs());
   const Interruption by = interruption(view_inputs());
-  renderer_->request_jpeg(wanted_jpeg(view_state));
+  const std::optional<int> jpeg = wanted_jpeg(view_state);
+  renderer_->request_jpeg(jpeg);
   const bool began = renderer_->begin([&] {
     if (by == Interruption::none) return false;
     const bool changed = session_->version() != state_.version;
@@ -385,6 +388,8 @@ void SessionView::begin_frame(double seconds) {
   if (began) {
     begun_.push_back({.view_state = view_state,
                       .start = start,
+                      .follows = in_flight(),
+                      .jpeg = jpeg,
                       .version = state_.version,
                       .rev = state_.rev,
                       .width = state_.width,
@@ -407,7 +412,9 @@ void SessionView::finish_frame(Clock::time_point device_free) {
   render::Frame frame = renderer_->finish();
   if (frame.new_buffers) publish_buffers();
   const Clock::time_point end = Clock::now();
-  const Clock::duration taken = end - std::max(begun.start, device_free);
+  const Clock::time_point free = begun.follows ? frame_ended_at_ : device_free;
+  const Clock::duration taken = end - std::max(begun.start, free);
+  frame_ended_at_ = end;
   measure_frame(begun.view_state, taken);
   device_time_ = taken;
   services_.measurements.rendered(std::chrono::duration<double>(taken).count(), pass_timings(frame),
@@ -443,7 +450,8 @@ std::shared_ptr<RenderedFrame> SessionView::describe(render::Frame frame, const 
   rendered->inputs = begun.inputs;
   rendered->discontinuities = discontinuities_;
   rendered->fps = static_cast<double>(frame_times_.size());
-  rendered->depth_read = session_->viewers().wants_depth();
+  // The device may write its images again by now.
+  rendered->depth_read = session_->viewers().wants_depth() && !in_flight();
   if (rendered->depth_read && depth_pays()) rendered->depth = renderer_->depth();
   return rendered;
 }

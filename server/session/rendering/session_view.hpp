@@ -66,7 +66,7 @@ class SessionView {
   /// Whether the device still works on a frame.
   bool in_flight() const { return !begun_.empty(); }
   /// Whether its next frame may begin before the device is done with the one that it works on.
-  bool can_begin_following() const;
+  bool can_begin_following();
   /// Begins it shortly before that, where nothing but the camera has changed: the device goes on
   /// while the earlier frame is read and sent.
   void begin_following_frame(Clock::time_point device_free);
@@ -129,6 +129,8 @@ class SessionView {
   struct BegunFrame {
     ViewState view_state;  // that it is drawn for
     Clock::time_point start;
+    bool follows = false;       // it has begun before the device was done with the one before
+    std::optional<int> jpeg{};  // its quality, if it comes as one
     std::uint64_t version = 0;  // of the session's state, like the next ones
     std::uint32_t rev = 0;
     std::uint32_t width = 0;
@@ -148,6 +150,7 @@ class SessionView {
   std::size_t moving_sessions_ = 1;
   Clock::duration full_frame_time_{};  // that moving frames take at full size; zero: not known
   Clock::duration device_time_{};      // that the newest took
+  Clock::time_point frame_ended_at_;   // when the device was done with it
   std::shared_ptr<const RenderedFrame> newest_;
   std::uint64_t newest_version_ = 0;     // of the state that it shows
   bool newest_stepped_ = false;          // it was rendered in lockstep

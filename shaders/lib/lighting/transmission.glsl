@@ -86,6 +86,14 @@ vec3 sample_transmitted(SurfaceMaterial m, float index, vec2 u) {
   return above_plane(normalize(direction), -m.geometric);
 }
 
+/// `incident` from within a volume of that index, bent by a microfacet: refract() without its zero
+/// at the critical angle, where rounding decides.
+vec3 refract_outward(vec3 incident, vec3 h, float index) {
+  float cosine = -dot(incident, h);
+  float outside2 = max(1.0 - index * index * (1.0 - cosine * cosine), 0.0);
+  return normalize(index * incident + (index * cosine - sqrt(outside2)) * h);
+}
+
 /// Where a path from within a volume goes at its boundary, and the factor on its throughput.
 struct Departure {
   vec3 direction;
@@ -116,7 +124,7 @@ Departure sample_departure(HitSurface s, SurfaceMaterial m, float index, float p
   d.outside = pick >= reflects && pick < reflects + transmits;
   d.diffuse = pick >= reflects + transmits;
   if (d.outside) {
-    d.direction = normalize(refract(-m.eye, h, index));
+    d.direction = refract_outward(-m.eye, h, index);
     d.weight = transmitted * (sum / max(transmits, 1e-6));
   } else if (d.diffuse) {
     d.direction = sample_cosine(m.normal, u);

@@ -5,6 +5,7 @@
 #include "lib/math/random.glsl"
 
 const float distance_of_misses = 1e4;  // metres
+const float farthest_hit = 0.999 * distance_of_misses;  // what is hit beyond counts as there
 
 /// Roughness is stored in steps of 1 / 255: a little more than half of one is still the same.
 bool traces_specular(float roughness, float max_roughness) {

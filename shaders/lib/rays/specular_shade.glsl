@@ -123,7 +123,7 @@ void main() {
     if (hit.instance == hit_none) {
       if (enabled(frame_environment_specular)) light = environment_radiance(ray.direction);
     } else {
-      travelled = min(hit.t, distance_of_misses);
+      travelled = min(hit.t, farthest_hit);
       float roughness = imageLoad(surface, pixel).x;
       RayCone cone = reflected_cone(camera_cone(), imageLoad(motion, pixel).w, roughness);
       HitSurface s = hit_surface(hit, ray.direction, cone_width(cone, hit.t));

@@ -6,6 +6,7 @@ import os
 import shutil
 import tempfile
 
+from harness.images import encode_png
 from harness.models import Model
 from harness.server import Server, ServerTestCase
 from harness.viewer import Viewer
@@ -68,12 +69,18 @@ class Examples(ServerTestCase):
         shutil.copy(os.path.join(given, "mirror.glb"), cls.folder.name)
         shutil.copy(os.path.join(given, "sky.hdr"), cls.folder.name)
         cls.jobs = tempfile.TemporaryDirectory()
-        cls.server = Server("--scene", "mirror", "--jobs", cls.jobs.name, scenes=cls.folder.name)
+        cls.uploads = tempfile.TemporaryDirectory()
+        cls.server = Server("--scene", "mirror", "--jobs", cls.jobs.name,
+                            "--uploads", cls.uploads.name, scenes=cls.folder.name)
+        status, _, answer = cls.server.request("PUT", "/api/v1/images/bricks",
+                                               encode_png((180, 80, 60)))
+        assert status == 201, answer
 
     @classmethod
     def tearDownClass(cls):
         super().tearDownClass()
         cls.jobs.cleanup()
+        cls.uploads.cleanup()
 
     def in_order(self):
         methods = {one["name"]: one for one in self.server.call("rpc.discover")["methods"]}

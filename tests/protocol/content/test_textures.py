@@ -4,12 +4,10 @@ import base64
 import json
 import os
 import shutil
-import struct
 import subprocess
 import tempfile
-import zlib
 
-from harness.images import decode_png, difference
+from harness.images import decode_png, difference, encode_png
 from harness.models import Model
 from harness.server import Server, ServerTestCase
 from harness.viewer import Viewer
@@ -19,18 +17,7 @@ SAMPLES = 48
 CONTROL, VIEW = "steering-0123456789", "watching-0123456789"
 
 
-def png(color, width=4, height=4):
-    """An image of one color."""
-    def chunk(kind, body):
-        return (struct.pack(">I", len(body)) + kind + body
-                + struct.pack(">I", zlib.crc32(kind + body)))
-    rows = (b"\0" + bytes(color) * width) * height
-    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header)
-            + chunk(b"IDAT", zlib.compress(rows)) + chunk(b"IEND", b""))
-
-
-RED, GREEN = png((255, 0, 0)), png((0, 255, 0))
+RED, GREEN = encode_png((255, 0, 0)), encode_png((0, 255, 0))
 
 
 class Textures(ServerTestCase):
@@ -241,6 +228,24 @@ class Textures(ServerTestCase):
         self.texture(image="changing")
         self.assertGreater(difference(self.image(), red), 1)
         os.remove(os.path.join(self.uploads.name, "images", "changing.png"))
+
+    def test_an_image_of_another_format_takes_the_place_of_one_in_use(self):
+        def upload(file):
+            status, _, answer = self.server.request("PUT", "/api/v1/images/planks", file)
+            self.assertEqual(status, 201, answer)
+        upload(RED)
+        for slot in ("base_color", "emissive"):
+            self.texture(slot=slot, image="planks")
+        _, _, jpeg = self.server.request("GET", "/api/v1/sessions/main/frame.jpg?samples=1")
+        self.assertEqual(jpeg[:2], b"\xff\xd8")
+        upload(jpeg)  # the file of that name is another one now
+        self.texture(slot="normal", image="green")
+        self.assertEqual(sorted(one["image"] for one in self.replaced()),
+                         ["green", "planks", "planks"])
+        for slot in ("base_color", "emissive", "normal"):
+            self.texture(slot=slot, image=None)
+        self.assertEqual(self.replaced(), [])
+        os.remove(os.path.join(self.uploads.name, "images", "planks.jpg"))
 
     def test_read_only_tokens_upload_and_change_nothing(self):
         with Server("--scene", "lit", "--token", CONTROL, "--view-token", VIEW, "--uploads",

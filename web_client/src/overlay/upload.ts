@@ -88,14 +88,15 @@ export async function uploadImage(
     toasts.show(error);
     return null;
   }
-  const name = nameOf(file.name);
+  // Images of the same name are not the same image: "1.png" of one folder and of another.
+  const name = viewer.textures.freeName(nameOf(file.name));
   try {
     await upload(viewer.connection.address.url(`api/v1/images/${name}`), file, (fraction) => {
       viewer.loading.start({ kind: "texture", name, stage: "uploading", fraction, by: "" });
     });
     return name;
   } catch (error) {
-    viewer.loading.end();
+    viewer.loading.endTexture();
     toasts.show((error as Error).message, {
       topic: "scene",
       detail: (error as UploadError).detail,

@@ -125,6 +125,11 @@ export class SceneLoading {
     if (this.current.value) this.current.set(null);
   }
 
+  /** A texture is not set after all; a scene that is loaded by now goes on. */
+  endTexture(): void {
+    if (this.current.value?.kind === "texture") this.end();
+  }
+
   /** Revisions of another session are not comparable. */
   reset(): void {
     this.newestRev = 0;

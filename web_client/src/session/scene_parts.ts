@@ -265,7 +265,7 @@ export class SceneParts {
     this.materials.set(merged(this.materials.value, material.name, material));
   }
 
-  private async read(): Promise<void> {
+  async read(): Promise<void> {
     if (!this.host.scene.value) return;
     const [lights, materials, environment] = await Promise.all([
       this.list("lights.list"),

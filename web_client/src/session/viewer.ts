@@ -172,6 +172,7 @@ export class Viewer {
       history: this.history,
       loading: this.loading,
       report: (error) => this.report(error),
+      changed: () => void this.parts.read(),
     });
     this.parts = new SceneParts({
       rpc: this.rpc,

@@ -40,9 +40,10 @@ function serve(refuses = false) {
     loading: {
       start: ({ kind }: { kind: string }) => loading.push(kind),
       takesEffect: (rev: number) => loading.push(`from ${rev}`),
-      end: () => loading.push("end"),
+      endTexture: () => loading.push("end"),
     } as never,
     report: (error) => errors.push(error),
+    changed: () => loading.push("materials"),
   });
   return { textures, calls, loading, errors, history };
 }
@@ -53,7 +54,7 @@ test("a texture is replaced, and undo brings the file's back", async () => {
   const { textures, calls, loading, history } = serve();
   await settled();
   assert.equal(await textures.choose("floor", "base_color", { image: "bricks" }), true);
-  assert.deepEqual(loading, ["texture", "from 2"]);
+  assert.deepEqual(loading, ["texture", "from 2", "materials"]);
   assert.equal(textures.find("floor", "base_color")?.image, "bricks");
   assert.equal(history.next.value.undo, "base color texture of floor");
   history.undo();

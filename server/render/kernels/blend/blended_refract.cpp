@@ -39,7 +39,7 @@ class BoundaryCrossing {
     if (!none(hit.met)) {
       left = select(hit.met, left_by_volume(scene_, medium, hit.t), left);
       const Float from_eye = entered.real(HELIOGRAPH_WORD(shared::Hit, t)) + hit.t;
-      stays = cross(hit, from_eye, pixel, ray);
+      stays = cross(hit, from_eye, medium, pixel, ray);
     }
     ray.user = ray.user * left;
     const Mask carries = hn::And(lanes, hn::Gt(largest_of(ray.user), zero()));
@@ -52,9 +52,9 @@ class BoundaryCrossing {
     return shared::boundary_dimension + 2 * job.constants.round;
   }
 
-  /// @return which rays stay inside
-  HWY_INLINE Mask cross(const HitLanes& hit, Float from_eye, const PixelLanes& pixel,
-                        RayLanes& ray) const {
+  /// `medium`: that rays have entered, whose bands they have. @return which stay inside
+  HWY_INLINE Mask cross(const HitLanes& hit, Float from_eye, Integer medium,
+                        const PixelLanes& pixel, RayLanes& ray) const {
     const Mask nowhere = hn::FirstN(tag, 0);
     const Float width = hn::MulAdd(from_eye, number(cone_.y), number(cone_.x));
     const auto s = hit_surface<LayeredSurfaceLanes, false>(scene_, hit, ray.direction, width);
@@ -65,8 +65,7 @@ class BoundaryCrossing {
     const Unsigned x = as_unsigned(pixel.x), y = as_unsigned(pixel.y);
     Float2 u;
     directions_.at(x, y, u.x, u.y);
-    const Float index =
-        refraction_index(scene_, boundary.medium, bands_.at(scene_, boundary.medium, pixel));
+    const Float index = refraction_index(scene_, boundary.medium, bands_.at(scene_, medium, pixel));
     const DepartureLanes d = sample_departure(s, m, index, picks_.at(x, y), u);
     ray.user = select(leaving, ray.user * d.weight, ray.user);
     // After the last boundary all light goes on as if nothing bent it.

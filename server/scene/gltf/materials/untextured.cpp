@@ -13,7 +13,10 @@ bool is_textured(const shared::TextureSlot& slot) {
 void drop_textures(shared::Material& material, MaterialLayers& layers) {
   if (is_textured(material.emissive_texture)) material.emissive = glm::vec3(0.0f);
   if (is_textured(material.metallic_roughness_texture)) material.metallic = 0.0f;
-  if (is_textured(layers.transmission_texture)) layers.transmission = 0.0f;
+  if (is_textured(layers.transmission_texture)) {
+    layers.transmission = 0.0f;
+    material.passing = 0.0f;
+  }
   for (const TextureKind& kind : texture_kinds()) kind.of(material, layers) = no_texture_slot();
 }
 

@@ -70,6 +70,7 @@ function createRow(
   replace: (slot: string, file: File) => Promise<void>,
 ): Row {
   const label = humanise(slot);
+  let viewedMaterial = "";
   const select = element("select", {
     name: `texture_${slot}`,
     change: () => void change(slot, choiceFor(select.value)),
@@ -81,7 +82,8 @@ function createRow(
     upload: (chosen) => void replace(slot, chosen),
   });
   const remove = button(`Remove the ${label.toLowerCase()} texture`, "close", () => {
-    void change(slot, { removed: true });
+    const own = viewer.textures.find(viewedMaterial, slot)?.file_image !== undefined;
+    void change(slot, own ? { removed: true } : { image: null });
   });
   const restore = button(`Restore the ${label.toLowerCase()} texture of the file`, "reset", () => {
     void change(slot, { image: null });
@@ -89,6 +91,7 @@ function createRow(
   const node = field(label, select, file, remove, restore);
   acceptDrop(node, viewer, (dropped) => void replace(slot, dropped));
   const show = (material: string): void => {
+    viewedMaterial = material;
     const texture = viewer.textures.find(material, slot);
     setOptions(select, optionsOf(viewer.textures, material, slot));
     select.value = valueOf(texture);
@@ -122,7 +125,7 @@ export function optionsOf(
   if (texture?.image !== undefined && !names.includes(texture.image)) names.push(texture.image);
   return [
     { value: ofFile, label: own ? `As in the file: ${file}` : "None, as in the file" },
-    ...(own ? [{ value: none, label: "None" }] : []),
+    ...(own || texture?.removed ? [{ value: none, label: "None" }] : []),
     ...names.map((name) => ({ value: imagePrefix + name, label: name })),
   ];
 }

@@ -1,7 +1,7 @@
 // The textures of the scene's materials, and the uploaded images that can take their place.
 
-import type { Methods, SceneInfo } from "heliograph/messages.ts";
-import type { RpcPeer } from "heliograph/rpc.ts";
+import { ErrorCode, type Methods, type SceneInfo } from "heliograph/messages.ts";
+import { RpcError, type RpcPeer } from "heliograph/rpc.ts";
 import { humanise } from "heliograph/settings_schema.ts";
 import { Signal } from "../../common/signal.ts";
 import type { UndoHistory } from "../history/undo_history.ts";
@@ -30,9 +30,11 @@ interface TexturesHost {
   loading: {
     start(loading: Loading): void;
     takesEffect(rev: number): void;
-    end(): void;
+    endTexture(): void;
   };
   report(error: unknown): void;
+  /** Materials are others where textures are. */
+  changed(): void;
 }
 
 export class Textures {
@@ -69,7 +71,16 @@ export class Textures {
   /** Another viewer has changed textures: what shows them is in effect from this revision on. */
   notified({ rev }: { rev: number }): void {
     this.host.loading.takesEffect(rev);
+    this.host.changed();
     void this.read();
+  }
+
+  /** The name, or one like it, that no image of the server has. */
+  freeName(name: string): string {
+    const names = new Set(this.images.value.map((image) => image.name));
+    let free = name;
+    for (let number = 2; names.has(free); ++number) free = `${name}-${number}`;
+    return free;
   }
 
   async read(): Promise<void> {
@@ -93,10 +104,13 @@ export class Textures {
     try {
       const state = await rpc.request("textures.set", { material, slot, ...choice }, loadTimeoutMs);
       loading.takesEffect(state.rev);
+      this.host.changed();
       return true;
     } catch (error) {
-      loading.end();
-      this.host.report(error);
+      loading.endTexture();
+      // What a later load has replaced is no error.
+      const replaced = error instanceof RpcError && error.code === ErrorCode.conflict;
+      if (!replaced) this.host.report(error);
       return false;
     } finally {
       await this.read();

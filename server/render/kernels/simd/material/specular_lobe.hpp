@@ -20,6 +20,8 @@ HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 inline constexpr float distance_of_misses = 1e4f;  // metres
+inline constexpr float farthest_hit =
+    0.999f * distance_of_misses;  // what is hit beyond counts as there
 
 using MaterialLanes = SurfaceMaterial<Float>;
 
