@@ -44,12 +44,17 @@ class Groups {
   std::uint32_t last_ = 0;
 };
 
+/// As many passes one after the other, without barriers.
+PassOrder in_turn(std::size_t passes) {
+  PassOrder order{std::vector<std::uint32_t>(passes), std::vector<bool>(passes, false)};
+  std::iota(order.passes.begin(), order.passes.end(), 0u);
+  return order;
+}
+
 }  // namespace
 
 PassOrder declared_order(std::span<const PassUses> passes) {
-  PassOrder order{std::vector<std::uint32_t>(passes.size()),
-                  std::vector<bool>(passes.size(), false)};
-  std::iota(order.passes.begin(), order.passes.end(), 0u);
+  PassOrder order = in_turn(passes.size());
   std::set<std::uint32_t> read;
   std::set<std::uint32_t> written;
   for (std::size_t i = 0; i < passes.size(); ++i) {
@@ -77,7 +82,7 @@ PassOrder overlapping_order(std::span<const PassUses> passes) {
   std::vector<std::uint32_t> group(passes.size());
   std::ranges::transform(passes, group.begin(),
                          [&](const PassUses& pass) { return groups.group_of(pass); });
-  PassOrder order = declared_order(passes);
+  PassOrder order = in_turn(passes.size());
   std::ranges::stable_sort(order.passes, {}, [&](std::uint32_t pass) { return group[pass]; });
   for (std::size_t i = 0; i < passes.size(); ++i) {
     const std::uint32_t pass = order.passes[i];

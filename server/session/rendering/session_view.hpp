@@ -116,6 +116,7 @@ class SessionView {
   void begin_frame(double seconds);
   std::optional<int> wanted_jpeg(ViewState state);
   struct BegunFrame;
+  Clock::time_point began_on_device(const BegunFrame& begun, Clock::time_point device_free) const;
   std::shared_ptr<RenderedFrame> describe(render::Frame frame, const BegunFrame& begun,
                                           Clock::time_point end);
 
