@@ -4,6 +4,7 @@ layout(local_size_x = 64) in;
 // Rays from the chosen blended surface of each pixel, where it bends or blurs what is behind: into
 // the volume that it encloses, or through the thin wall that it is. Each carries what its light is
 // multiplied by.
+#include "lib/rays/stored_rays.glsl"
 #include "lib/scene/hit_material.glsl"
 #include "lib/lighting/transmission.glsl"
 #include "lib/math/random.glsl"
@@ -16,9 +17,9 @@ layout(set = 1, binding = 2, std430) readonly buffer Chosen { Hit chosen[]; };
 layout(set = 1, binding = 3, rgba32f) readonly uniform image2D radiance;  // a: all weights
 layout(set = 1, binding = 4, rgba32f) readonly uniform image2D behind;    // a: the chosen one's
 layout(set = 1, binding = 5, std430) buffer InsideCount { RayCount inside_count; };
-layout(set = 1, binding = 6, std430) writeonly buffer InsideRays { Ray inside_rays[]; };
+layout(set = 1, binding = 6, std430) writeonly buffer InsideRays { StoredRay inside_rays[]; };
 layout(set = 1, binding = 7, std430) buffer RefractedCount { RayCount refracted_count; };
-layout(set = 1, binding = 8, std430) writeonly buffer RefractedRays { Ray refracted_rays[]; };
+layout(set = 1, binding = 8, std430) writeonly buffer RefractedRays { StoredRay refracted_rays[]; };
 
 Ray through_ray(HitSurface s, SurfaceMaterial m, uint medium, vec3 throughput, ivec2 pixel) {
   vec3 light = throughput * m.transmitted;

@@ -3,6 +3,7 @@
 layout(local_size_x = 64) in;
 // The rays that light the chosen blended surface of each pixel, as all others are lit: toward a
 // light, into the hemisphere, along its specular lobe. Each carries what it brings.
+#include "lib/rays/stored_rays.glsl"
 #include "lib/scene/hit_material.glsl"
 #include "lib/lighting/light_choice.glsl"
 #include "lib/rays/ray_index.glsl"
@@ -18,11 +19,11 @@ layout(set = 1, binding = 3, rgba32f) readonly uniform image2D radiance;
 layout(set = 1, binding = 4, rgba32f) uniform image2D behind;  // a: from weight to view Z
 layout(set = 1, binding = 5, rgba8) writeonly uniform image2D surface;
 layout(set = 1, binding = 6, std430) buffer ShadowCount { RayCount shadow_count; };
-layout(set = 1, binding = 7, std430) writeonly buffer ShadowRays { Ray shadow_rays[]; };
+layout(set = 1, binding = 7, std430) writeonly buffer ShadowRays { StoredRay shadow_rays[]; };
 layout(set = 1, binding = 8, std430) buffer AmbientCount { RayCount ambient_count; };
-layout(set = 1, binding = 9, std430) writeonly buffer AmbientRays { Ray ambient_rays[]; };
+layout(set = 1, binding = 9, std430) writeonly buffer AmbientRays { StoredRay ambient_rays[]; };
 layout(set = 1, binding = 10, std430) buffer MirrorCount { RayCount mirror_count; };
-layout(set = 1, binding = 11, std430) writeonly buffer MirrorRays { Ray mirror_rays[]; };
+layout(set = 1, binding = 11, std430) writeonly buffer MirrorRays { StoredRay mirror_rays[]; };
 layout(push_constant) uniform Constants {
   float max_roughness;  // below 0: no reflections are traced
   float rough_rate;     // fraction of the rays that rough surfaces reflect which are traced

@@ -5,10 +5,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 // images that accumulate them.
 #include "lib/rays/camera_ray.glsl"
 #include "lib/rays/ray_stream.glsl"
+#include "lib/rays/stored_rays.glsl"
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D motion;
 layout(set = 1, binding = 1, std430) buffer Count { RayCount ray_count; };
-layout(set = 1, binding = 2, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 2, std430) writeonly buffer Rays { StoredRay rays[]; };
 layout(set = 1, binding = 3, rgba32f) writeonly uniform image2D radiance;
 layout(set = 1, binding = 4, rgba32f) writeonly uniform image2D behind;
 layout(set = 1, binding = 5, rgba32f) writeonly uniform image2D front_motion;

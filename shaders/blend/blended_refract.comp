@@ -4,6 +4,7 @@
 layout(local_size_x = 64) in;
 // One boundary more of the rays that a blended surface has sent into its volume: those that come
 // out are left to be shaded, others go on inside.
+#include "lib/rays/stored_rays.glsl"
 #include "lib/scene/hit_material.glsl"
 #include "lib/lighting/transmission.glsl"
 #include "lib/math/random.glsl"
@@ -14,9 +15,9 @@ layout(set = 1, binding = 1, std430) readonly buffer InsideRays { Ray inside_ray
 layout(set = 1, binding = 2, std430) readonly buffer Hits { Hit hits[]; };
 layout(set = 1, binding = 3, std430) readonly buffer Chosen { Hit chosen[]; };  // by pixel
 layout(set = 1, binding = 4, std430) buffer NextCount { RayCount next_count; };
-layout(set = 1, binding = 5, std430) writeonly buffer NextRays { Ray next_rays[]; };
+layout(set = 1, binding = 5, std430) writeonly buffer NextRays { StoredRay next_rays[]; };
 layout(set = 1, binding = 6, std430) buffer RefractedCount { RayCount refracted_count; };
-layout(set = 1, binding = 7, std430) writeonly buffer RefractedRays { Ray refracted_rays[]; };
+layout(set = 1, binding = 7, std430) writeonly buffer RefractedRays { StoredRay refracted_rays[]; };
 layout(push_constant) uniform Constants {
   uint round;
   uint last_round;

@@ -4,6 +4,7 @@ layout(local_size_x = 64) in;
 // One blended surface more of each ray, from front to back: what it sends out by itself, and how
 // much of what is behind still shows. One surface of each pixel is chosen for the rays that light
 // it, in proportion to the light it would send to the eye if nothing occluded it.
+#include "lib/rays/stored_rays.glsl"
 #include "lib/scene/hit_material.glsl"
 #include "lib/lighting/lights.glsl"
 #include "lib/lighting/transmission.glsl"
@@ -16,13 +17,13 @@ layout(set = 1, binding = 1, std430) readonly buffer MetRays { Ray met_rays[]; }
 layout(set = 1, binding = 2, std430) readonly buffer Hits { Hit hits[]; };
 layout(set = 1, binding = 3, std430) readonly buffer Before { Vertex previous_vertices[]; };
 layout(set = 1, binding = 4, std430) buffer Count { RayCount ray_count; };
-layout(set = 1, binding = 5, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 5, std430) writeonly buffer Rays { StoredRay rays[]; };
 layout(set = 1, binding = 6, rgba32f) uniform image2D radiance;  // a: sum of all weights
 layout(set = 1, binding = 7, rgba32f) uniform image2D behind;    // a: weight of the chosen one
 layout(set = 1, binding = 8, rgba32f) writeonly uniform image2D front_motion;
-layout(set = 1, binding = 9, std430) writeonly buffer Chosen { Hit chosen[]; };  // by pixel
+layout(set = 1, binding = 9, std430) writeonly buffer Chosen { StoredHit chosen[]; };  // by pixel
 layout(set = 1, binding = 10, std430) buffer LitCount { RayCount lit_count; };
-layout(set = 1, binding = 11, std430) writeonly buffer LitRays { Ray lit_rays[]; };
+layout(set = 1, binding = 11, std430) writeonly buffer LitRays { StoredRay lit_rays[]; };
 layout(push_constant) uniform Constants {
   uint round;
   uint last_round;
@@ -56,7 +57,7 @@ void choose(ivec2 pixel, Hit hit, HitSurface s, SurfaceMaterial m, bool bends, v
   hit.padding0 = floatBitsToUint(throughput.r);
   hit.padding1 = floatBitsToUint(throughput.g);
   hit.padding2 = floatBitsToUint(throughput.b);
-  chosen[uint(pixel.y) * frame.extent.x + uint(pixel.x)] = hit;
+  chosen[uint(pixel.y) * frame.extent.x + uint(pixel.x)] = stored(hit);
 }
 
 /// Whether anything behind it still shows. `first`: whether it is the first of its pixel to be lit.

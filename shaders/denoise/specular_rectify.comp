@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 16, local_size_y = 16) in;
 // Holds the long history of reflections against a short one: what the last few frames show nearby
 // bounds it, which 1-sample neighbourhoods could not without cutting rare bright paths away (the
 // "holes" of paper section 3.1). Where it bites the history becomes shorter, so that variance and
@@ -20,20 +20,43 @@ layout(set = 1, binding = 3, rgba16f) uniform image2D history;
 layout(set = 1, binding = 4, rgba16f) writeonly uniform image2D kept;  // radiance, distance
 layout(push_constant) uniform Constants { TemporalConstants constants; };
 
+const int group_side = 16;
+const int most_radius = 8;  // of settings
+const int most_side = group_side + 2 * most_radius;
+const float no_surface = -1.0, unsampled = 0.0, sampled = 1.0;
+shared vec4 nearby[most_side * most_side];  // YCoCg of `fast`; a: one of the above
+
+/// What the windows of a group cover, read once.
+void read_nearby(bool gradient) {
+  int side = group_side + 2 * constants.radius;
+  ivec2 corner = ivec2(gl_WorkGroupID.xy) * group_side - constants.radius;
+  for (int i = int(gl_LocalInvocationIndex); i < side * side; i += group_side * group_side) {
+    ivec2 tap = corner + ivec2(i % side, i / side);
+    vec4 recent = vec4(0.0, 0.0, 0.0, no_surface);
+    if (inside(tap, ivec2(frame.extent)) && !guide_is_background(imageLoad(guide, tap))) {
+      recent = imageLoad(fast, tap);
+      recent = vec4(to_ycocg(recent.rgb), gradient && recent.w < 0.0 ? unsampled : sampled);
+    }
+    nearby[i] = recent;
+  }
+  barrier();
+}
+
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (outside_frame(pixel) || guide_is_background(imageLoad(guide, pixel))) return;
   bool gradient = constants.rectification == rectification_gradient;
+  read_nearby(gradient);
+  int reach = 2 * constants.radius, side = group_side + reach;
+  int first = int(gl_LocalInvocationID.y) * side + int(gl_LocalInvocationID.x);
+  if (nearby[first + constants.radius * (side + 1)].a == no_surface) return;
   Window window = empty_window();
   float surfaces = 0.0;
-  for (int y = -constants.radius; y <= constants.radius; ++y) {
-    for (int x = -constants.radius; x <= constants.radius; ++x) {
-      ivec2 tap = pixel + ivec2(x, y);
-      if (!inside(tap, ivec2(frame.extent)) || guide_is_background(imageLoad(guide, tap))) continue;
+  for (int y = 0; y <= reach; ++y) {
+    for (int x = 0; x <= reach; ++x) {
+      vec4 recent = nearby[first + y * side + x];
+      if (recent.a == no_surface) continue;
       surfaces += 1.0;
-      vec4 recent = imageLoad(fast, tap);
-      if (gradient && recent.w < 0.0) continue;
-      add(window, to_ycocg(recent.rgb));
+      if (recent.a == sampled) add(window, recent.rgb);
     }
   }
   vec4 state = imageLoad(history, pixel);

@@ -5,9 +5,10 @@ layout(local_size_x = 8, local_size_y = 8) in;
 // part of the scene.
 #include "lib/frame.glsl"
 #include "lib/rays/ray_index.glsl"
+#include "lib/rays/stored_rays.glsl"
 
 layout(set = 1, binding = 0, std430) writeonly buffer Count { RayCount ray_count; };
-layout(set = 1, binding = 1, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 1, std430) writeonly buffer Rays { StoredRay rays[]; };
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -26,5 +27,5 @@ void main() {
   ray.user = 0u;
   ray.padding0 = 0u;
   ray.padding1 = 0u;
-  rays[tile * 64u + gl_LocalInvocationIndex] = ray;
+  rays[tile * 64u + gl_LocalInvocationIndex] = stored(ray);
 }

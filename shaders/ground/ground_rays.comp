@@ -6,11 +6,12 @@ layout(local_size_x = 64) in;
 #include "lib/frame.glsl"
 #include "lib/math/random.glsl"
 #include "lib/rays/ray_index.glsl"
+#include "lib/rays/stored_rays.glsl"
 #include "shared/ground.h"
 
 layout(set = 1, binding = 0, std430) readonly buffer Lights { GroundLight ground_light[]; };
 layout(set = 1, binding = 1, std430) buffer Count { RayCount ray_count; };
-layout(set = 1, binding = 2, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 2, std430) writeonly buffer Rays { StoredRay rays[]; };
 
 /// How much of its weight a light with a place sends along `direction` to a surface `away` metres
 /// from it.
@@ -56,6 +57,6 @@ void main() {
     ray.pixel = texel;
     ray.user = floatBitsToUint(max(weight, 0.0));
     ray.padding0 = ray.padding1 = 0u;
-    rays[texel * ground_rays + i] = ray;
+    rays[texel * ground_rays + i] = stored(ray);
   }
 }

@@ -9,12 +9,13 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/rays/ray_stream.glsl"
 #include "lib/rays/sampling_plan.glsl"
 #include "lib/math/geometry.glsl"
+#include "lib/rays/stored_rays.glsl"
 #include "shared/path_guide.h"
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D normals;
 layout(set = 1, binding = 1, rgba32f) readonly uniform image2D motion;
 layout(set = 1, binding = 2, std430) buffer Count { RayCount ray_count; };
-layout(set = 1, binding = 3, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 3, std430) writeonly buffer Rays { StoredRay rays[]; };
 layout(set = 1, binding = 4, r32ui) readonly uniform uimage2D planned;  // or anything
 layout(set = 1, binding = 5, rgba32f) writeonly uniform image2D radiance;
 layout(set = 1, binding = 6, std430) readonly buffer Guide { GuideEntry guide[]; };

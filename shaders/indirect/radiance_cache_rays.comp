@@ -8,6 +8,7 @@ layout(local_size_x = 64) in;
 #include "lib/lighting/light_choice.glsl"
 #include "lib/math/sampling.glsl"
 #include "lib/rays/ray_stream.glsl"
+#include "lib/rays/stored_rays.glsl"
 #include "shared/emissive.h"
 #include "shared/path_guide.h"
 #include "shared/radiance_cache.h"
@@ -15,9 +16,9 @@ layout(local_size_x = 64) in;
 layout(set = 1, binding = 0, std430) buffer Keys { uint cache_keys[]; };
 layout(set = 1, binding = 1, std430) buffer Cells { RadianceCell cells[]; };
 layout(set = 1, binding = 2, std430) buffer Count { RayCount ray_count; };
-layout(set = 1, binding = 3, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 3, std430) writeonly buffer Rays { StoredRay rays[]; };
 layout(set = 1, binding = 4, std430) buffer ShadowCount { RayCount shadow_count; };
-layout(set = 1, binding = 5, std430) writeonly buffer ShadowRays { Ray shadow_rays[]; };
+layout(set = 1, binding = 5, std430) writeonly buffer ShadowRays { StoredRay shadow_rays[]; };
 // Of this frame, in scenes with emissive triangles.
 layout(set = 1, binding = 6, std430) readonly buffer Points { EmissivePoint points[]; };
 layout(set = 1, binding = 7, std430) readonly buffer Guide { GuideEntry guide[]; };

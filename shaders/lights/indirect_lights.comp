@@ -8,6 +8,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/math/random.glsl"
 #include "lib/rays/ray_stream.glsl"
 #include "lib/math/geometry.glsl"
+#include "lib/rays/stored_rays.glsl"
 #include "shared/emissive.h"
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D normals;
@@ -15,7 +16,7 @@ layout(set = 1, binding = 1, rgba32f) readonly uniform image2D motion;
 layout(set = 1, binding = 2, rgba32f) readonly uniform image2D radiance;
 layout(set = 1, binding = 3, std430) readonly buffer Points { EmissivePoint points[]; };
 layout(set = 1, binding = 4, std430) buffer Count { RayCount ray_count; };
-layout(set = 1, binding = 5, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 5, std430) writeonly buffer Rays { StoredRay rays[]; };
 #include "lib/lighting/emissive_choice.glsl"
 
 void main() {

@@ -10,16 +10,17 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/lighting/environment_sampling.glsl"
 #include "lib/lighting/transmission.glsl"
 #include "lib/rays/reference_path.glsl"
+#include "lib/rays/stored_rays.glsl"
 
 layout(set = 1, binding = 0, std430) buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 1, std430) readonly buffer Hits { Hit hits[]; };
 layout(set = 1, binding = 2, std430) buffer Paths { ReferencePath paths[]; };
 layout(set = 1, binding = 3, std430) writeonly buffer ShadowCount { RayCount shadow_count; };
-layout(set = 1, binding = 4, std430) writeonly buffer ShadowRays { Ray shadow_rays[]; };
+layout(set = 1, binding = 4, std430) writeonly buffer ShadowRays { StoredRay shadow_rays[]; };
 layout(set = 1, binding = 5, std430) writeonly buffer SkyCount { RayCount sky_count; };
-layout(set = 1, binding = 6, std430) writeonly buffer SkyRays { Ray sky_rays[]; };
+layout(set = 1, binding = 6, std430) writeonly buffer SkyRays { StoredRay sky_rays[]; };
 layout(set = 1, binding = 7, std430) writeonly buffer EmissiveCount { RayCount emissive_count; };
-layout(set = 1, binding = 8, std430) writeonly buffer EmissiveRays { Ray emissive_rays[]; };
+layout(set = 1, binding = 8, std430) writeonly buffer EmissiveRays { StoredRay emissive_rays[]; };
 layout(set = 1, binding = 9, rgba32f) uniform image2D reference;
 layout(set = 1, binding = 10, std430) readonly buffer Shade { float ground_shade[]; };
 layout(push_constant) uniform Constants { ReferenceConstants constants; };
@@ -379,7 +380,7 @@ void main() {
     vec3 sum = imageLoad(reference, pixel).rgb + arrived * radiance;
     imageStore(reference, pixel, vec4(sum, 1.0));
   }
-  shadow_rays[index] = to.shadow;
-  sky_rays[index] = to.sky;
-  if (scene_has(scene_emissive)) emissive_rays[index] = to.emissive;
+  shadow_rays[index] = stored(to.shadow);
+  sky_rays[index] = stored(to.sky);
+  if (scene_has(scene_emissive)) emissive_rays[index] = stored(to.emissive);
 }

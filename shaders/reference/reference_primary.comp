@@ -5,16 +5,17 @@ layout(local_size_x = 8, local_size_y = 8) in;
 // environment's diffuse light and a specular ray, as far as these are not occluded.
 #include "lib/rays/reference_path.glsl"
 #include "lib/rays/specular_pixels.glsl"
+#include "lib/rays/stored_rays.glsl"
 
 layout(set = 1, binding = 0, std430) buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 1, std430) readonly buffer Hits { Hit hits[]; };
 layout(set = 1, binding = 2, std430) buffer Paths { ReferencePath paths[]; };
 layout(set = 1, binding = 3, std430) writeonly buffer ShadowCount { RayCount shadow_count; };
-layout(set = 1, binding = 4, std430) writeonly buffer ShadowRays { Ray shadow_rays[]; };
+layout(set = 1, binding = 4, std430) writeonly buffer ShadowRays { StoredRay shadow_rays[]; };
 layout(set = 1, binding = 5, std430) writeonly buffer AmbientCount { RayCount ambient_count; };
-layout(set = 1, binding = 6, std430) writeonly buffer AmbientRays { Ray ambient_rays[]; };
+layout(set = 1, binding = 6, std430) writeonly buffer AmbientRays { StoredRay ambient_rays[]; };
 layout(set = 1, binding = 7, std430) writeonly buffer MirrorCount { RayCount mirror_count; };
-layout(set = 1, binding = 8, std430) writeonly buffer MirrorRays { Ray mirror_rays[]; };
+layout(set = 1, binding = 8, std430) writeonly buffer MirrorRays { StoredRay mirror_rays[]; };
 layout(set = 1, binding = 9, rgba32f) uniform image2D reference;
 layout(set = 1, binding = 10, std430) readonly buffer Shade { float ground_shade[]; };
 layout(push_constant) uniform Constants { ReferenceConstants constants; };
@@ -92,8 +93,8 @@ void main() {
       ambient = ambient_ray(m, s.position, path.throughput * open * s.occlusion, pixel);
     }
   }
-  shadow_rays[index] = shadow;
-  ambient_rays[index] = ambient;
-  mirror_rays[index] = specular;
+  shadow_rays[index] = stored(shadow);
+  ambient_rays[index] = stored(ambient);
+  mirror_rays[index] = stored(specular);
   imageStore(reference, pixel, vec4(radiance, 1.0));
 }

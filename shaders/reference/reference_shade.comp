@@ -4,12 +4,13 @@ layout(local_size_x = 8, local_size_y = 8) in;
 // What the specular ray hit, lit as the hybrid lights it: emission, the environment as if nothing
 // hid it, and one light as far as its shadow ray will find.
 #include "lib/rays/reference_path.glsl"
+#include "lib/rays/stored_rays.glsl"
 
 layout(set = 1, binding = 0, std430) readonly buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 1, std430) readonly buffer Hits { Hit hits[]; };
 layout(set = 1, binding = 2, std430) readonly buffer Paths { ReferencePath paths[]; };
 layout(set = 1, binding = 3, std430) writeonly buffer ShadowCount { RayCount shadow_count; };
-layout(set = 1, binding = 4, std430) writeonly buffer ShadowRays { Ray shadow_rays[]; };
+layout(set = 1, binding = 4, std430) writeonly buffer ShadowRays { StoredRay shadow_rays[]; };
 layout(set = 1, binding = 5, rgba32f) uniform image2D reference;
 layout(push_constant) uniform Constants { ReferenceConstants constants; };
 
@@ -55,5 +56,5 @@ void main() {
     vec3 sum = imageLoad(reference, pixel).rgb + path.throughput * radiance;
     imageStore(reference, pixel, vec4(sum, 1.0));
   }
-  shadow_rays[index] = shadow;
+  shadow_rays[index] = stored(shadow);
 }

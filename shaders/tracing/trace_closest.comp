@@ -4,11 +4,12 @@ layout(local_size_x = 64) in;
 
 #define ANY_HIT false
 #include "lib/rays/bvh.glsl"
+#include "lib/rays/stored_rays.glsl"
 
-layout(set = 1, binding = 5, std430) writeonly buffer Hits { Hit hits[]; };
+layout(set = 1, binding = 5, std430) writeonly buffer Hits { StoredHit hits[]; };
 
 void main() {
   const uint index = ray_index();
   if (index >= ray_count.count) return;
-  hits[index] = trace(rays[index]);
+  hits[index] = stored(trace(rays[index]));
 }

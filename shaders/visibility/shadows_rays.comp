@@ -15,11 +15,12 @@ layout(set = 1, binding = 2, rgba8) readonly uniform image2D base_color;
 layout(set = 1, binding = 3, rgba8) readonly uniform image2D surface;
 layout(set = 1, binding = 4, rgba32ui) readonly uniform uimage2D surface_layers;
 layout(set = 1, binding = 5, std430) buffer Count { RayCount ray_count; };
-layout(set = 1, binding = 6, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 6, std430) writeonly buffer Rays { StoredRay rays[]; };
 layout(set = 1, binding = 7, r32ui) readonly uniform uimage2D planned;  // or anything
 layout(set = 1, binding = 8, r32f) writeonly uniform image2D visibility;
 layout(push_constant) uniform Constants { uint by_plan; };
 
+#include "lib/rays/stored_rays.glsl"
 #include "lib/scene/gbuffer_material.glsl"
 
 void main() {

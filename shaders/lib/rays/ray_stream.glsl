@@ -2,7 +2,7 @@
 // workgroup size; rays need bindings `ray_count` and `rays` in the pass set.
 #ifndef HELIOGRAPH_RAY_STREAM_GLSL
 #define HELIOGRAPH_RAY_STREAM_GLSL
-#include "shared/ray.h"
+#include "lib/rays/stored_rays.glsl"
 
 shared uint group_rays;
 shared uint group_base;
@@ -23,7 +23,7 @@ shared uint group_base;
       atomicMax(ray_count.groups_y, (groups + groups_per_row - 1u) / groups_per_row); \
     }                                                                               \
     barrier();                                                                      \
-    if (requested) rays[group_base + slot] = (ray);                                    \
+    if (requested) rays[group_base + slot] = stored(ray);                            \
   }
 
 #endif

@@ -1,6 +1,7 @@
 // Light that comes back along specular rays: from what they met, or from the environment. Light of
 // lights at the hit waits for a shadow ray of its own.
 #define TEXTURE_ONE_LEVEL
+#include "lib/rays/stored_rays.glsl"
 #include "lib/scene/hit_material.glsl"
 #include "lib/lighting/light_choice.glsl"
 #include "lib/denoise/moments.glsl"
@@ -16,7 +17,7 @@ layout(set = 1, binding = 2, std430) readonly buffer SpecularCount { RayCount sp
 layout(set = 1, binding = 3, std430) readonly buffer SpecularRays { Ray specular_rays[]; };
 layout(set = 1, binding = 4, std430) readonly buffer Hits { Hit hits[]; };
 layout(set = 1, binding = 5, std430) buffer Count { RayCount ray_count; };
-layout(set = 1, binding = 6, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 6, std430) writeonly buffer Rays { StoredRay rays[]; };
 layout(set = 1, binding = 7, rgba32f) writeonly uniform image2D radiance;
 // One frame ago, or anything.
 layout(set = 1, binding = 8, rgba32f) readonly uniform image2D previous_motion;

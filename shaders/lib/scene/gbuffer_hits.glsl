@@ -1,6 +1,7 @@
 // The G-buffer from camera rays instead of triangles: the surfaces that rays have met, with the same
 // signals as lib/scene/gbuffer_surface.glsl. Rays go on through back faces that are not drawn and through
 // blended surfaces. GBUFFER_LAYERED: with what extensions add to materials.
+#include "lib/rays/stored_rays.glsl"
 #include "lib/scene/coverage.glsl"
 #include "lib/math/octahedral.glsl"
 #include "lib/rays/ray_index.glsl"
@@ -11,7 +12,7 @@ layout(set = 1, binding = 1, std430) readonly buffer MetRays { Ray met_rays[]; }
 layout(set = 1, binding = 2, std430) readonly buffer Hits { Hit hits[]; };
 layout(set = 1, binding = 3, std430) readonly buffer Before { Vertex previous_vertices[]; };
 layout(set = 1, binding = 4, std430) buffer Count { RayCount ray_count; };
-layout(set = 1, binding = 5, std430) writeonly buffer Rays { Ray rays[]; };
+layout(set = 1, binding = 5, std430) writeonly buffer Rays { StoredRay rays[]; };
 layout(set = 1, binding = 6, rgba32f) writeonly uniform image2D normals;
 layout(set = 1, binding = 7, rgba8) writeonly uniform image2D base_color;
 layout(set = 1, binding = 8, rgba8) writeonly uniform image2D surface;

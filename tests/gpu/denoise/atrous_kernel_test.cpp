@@ -144,8 +144,8 @@ class AtrousRig {
     const bool visibility = kind_ == Signal::visibility;
     rig_.plan().use_host_kernels(false);
     rig_.plan()
-        .pass(name, rig_.inputs().program(visibility ? shaders::visibility_atrous
-                                                     : shaders::specular_atrous))
+        .pass(name, rig_.inputs().program(visibility ? shaders::visibility_atrous_half
+                                                     : shaders::specular_atrous_half))
         .bind<kernels::AtrousBindings>(
             {.guide = guide_, .depth_slope = slope_, .signal = from, .filtered = to})
         .constants([this, half] { return halves_.*half; })

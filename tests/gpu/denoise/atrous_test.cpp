@@ -163,11 +163,14 @@ struct Filter {
       return made;
     };
     const auto& shader = specular ? shaders::specular_atrous : shaders::visibility_atrous;
+    const auto& half_shader =
+        specular ? shaders::specular_atrous_half : shaders::visibility_atrous_half;
     rig.plan().use_host_kernels(false);  // atrous_kernel_test.cpp compares the host kernel
     filtered = render::blur(rig.plan(), rig.inputs(), input,
                             {.name = "test",
                              .buffers = render::specular_atrous_buffers,
                              .program = rig.inputs().program(shader),
+                             .half_program = rig.inputs().program(half_shader),
                              .kernel = render::kernels::specular_atrous,
                              .iterations = iterations,
                              .shape = kernel,

@@ -26,8 +26,9 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const AtrousInpu
   const bool needs_half = separable && !halves_at_once;
   const gpu::ImageRef half = needs_half ? image(config.buffers.half) : gpu::ImageRef{};
 
-  const auto pass = [&](const std::string& name, gpu::ImageRef from, gpu::ImageRef to, auto shape) {
-    plan.pass(name, config.program)
+  const auto pass = [&](const std::string& name, const gpu::ProgramSource& program,
+                        gpu::ImageRef from, gpu::ImageRef to, auto shape) {
+    plan.pass(name, program)
         .bind<kernels::AtrousBindings>({.guide = input.guide,
                                         .depth_slope = input.depth_slope,
                                         .signal = from,
@@ -64,11 +65,15 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const AtrousInpu
       if (halves_at_once) {
         host_pass(name, signal, to, half_shape);
       } else {
-        pass(name + ".first", signal, half, [half_shape] { return half_shape(true); });
-        pass(name + ".second", half, to, [half_shape] { return half_shape(false); });
+        pass(name + ".first", config.half_program, signal, half,
+             [half_shape] { return half_shape(true); });
+        pass(name + ".second", config.half_program, half, to,
+             [half_shape] { return half_shape(false); });
       }
     } else {
-      pass(name, signal, to, [level, side] { return KernelShape{level, 2, 2, false, side}; });
+      pass(name, config.program, signal, to, [level, side] {
+        return KernelShape{level, 2, 2, false, side};
+      });
     }
     signal = to;
     if (feedback && feedback->level == level) feedback->keep(signal);

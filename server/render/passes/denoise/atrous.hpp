@@ -83,6 +83,7 @@ struct AtrousConfig {
   std::string name;  // of the passes, before the number of the iteration
   const AtrousBuffers& buffers;
   gpu::ProgramSource program;
+  gpu::ProgramSource half_program;  // of a separable iteration
   void (*kernel)(const kernels::AtrousJob&);
   void (*halves_kernel)(const kernels::AtrousHalvesJob&);
   int iterations;

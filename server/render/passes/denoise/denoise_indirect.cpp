@@ -20,6 +20,7 @@ AtrousConfig indirect_atrous_config(const FrameInputs& in) {
   return {"indirect.atrous",
           indirect_atrous_buffers,
           in.program(shaders::specular_atrous),
+          in.program(shaders::specular_atrous_half),
           kernels::specular_atrous,
           kernels::specular_atrous_halves,
           settings.iterations,

@@ -55,6 +55,7 @@ AtrousConfig specular_atrous_config(const FrameInputs& in) {
   return {"specular.atrous",
           specular_atrous_buffers,
           in.program(shaders::specular_atrous),
+          in.program(shaders::specular_atrous_half),
           kernels::specular_atrous,
           kernels::specular_atrous_halves,
           settings.iterations,

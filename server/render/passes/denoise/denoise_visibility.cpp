@@ -43,6 +43,7 @@ AtrousConfig visibility_atrous_config(const FrameInputs& in, const AtrousBuffers
   return {"visibility.atrous",
           buffers,
           in.program(shaders::visibility_atrous),
+          in.program(shaders::visibility_atrous_half),
           kernels::visibility_atrous,
           kernels::visibility_atrous_halves,
           settings.iterations,

@@ -1,0 +1,108 @@
+// How the edge-avoiding a-trous wavelet filter (Dammertz et al. 2010) weighs its taps, guided by
+// variance (Schied et al. 2017, equations 1 to 5). What a signal is comes from the shader that
+// includes this.
+#ifndef HELIOGRAPH_DENOISE_ATROUS_TAPS_GLSL
+#define HELIOGRAPH_DENOISE_ATROUS_TAPS_GLSL
+#include "lib/denoise/edge_stopping.glsl"
+#include "lib/denoise/guide.glsl"
+#include "lib/frame.glsl"
+#include "lib/math/random.glsl"
+#include "shared/denoise.h"
+
+layout(set = 1, binding = 0, rgba32f) readonly uniform image2D guide;
+layout(set = 1, binding = 1, rg32f) readonly uniform image2D depth_slope;
+layout(set = 1, binding = 2, rgba32f) readonly uniform image2D signal;
+layout(set = 1, binding = 3, rgba32f) writeonly uniform image2D filtered;
+
+/// Of the B3 spline (1, 4, 6, 4, 1) / 16 against its middle: logarithms of 1, 2/3 and 1/6.
+const float kernel_exponent[3] = float[3](0.0, -0.40546511, -1.79175947);
+
+bool has(AtrousConstants constants, uint flag) { return (constants.flags & flag) != 0u; }
+
+struct Center {
+  ivec2 pixel;
+  vec3 normal;
+  float roughness;
+  float view_z;
+  vec2 slope;
+  float curve;
+  float footprint;
+  vec2 brightness;
+  vec2 noise;  // standard deviation
+};
+
+/// What is known of a pixel without its signal.
+Center center_at(AtrousConstants constants, ivec2 pixel, Guide p) {
+  Center c;
+  c.pixel = pixel;
+  c.normal = p.normal;
+  c.roughness = p.roughness;
+  c.view_z = p.view_z;
+  c.slope = imageLoad(depth_slope, pixel).xy;
+  c.curve = enabled(frame_orthographic) ? 0.0 : 1.0 / c.view_z;
+  c.footprint = pixel_footprint(c.view_z) * float(constants.pixels_per_texel);
+  return c;
+}
+
+/// Of the images, which may be smaller than the frame.
+ivec2 image_extent(AtrousConstants constants) {
+  return (ivec2(frame.extent) + constants.pixels_per_texel - 1) / constants.pixels_per_texel;
+}
+
+/// How often a pixel is filtered: not beyond the width of the lobe, and less often where
+/// reflections bring no noise of their own (paper 3.5).
+int levels(AtrousConstants constants, float roughness) {
+  int most = 16;
+  if (has(constants, atrous_lobe_limit)) {
+    float pixels = lobe_pixels(roughness);
+    most = pixels < 1.0 ? 0 : 1 + int(log2(pixels));
+  }
+  if (!has(constants, atrous_levels_by_roughness)) return most;
+  if (roughness <= atrous_unblurred_roughness) return 0;
+  return roughness <= atrous_blurred_once_roughness ? min(most, 1) : most;
+}
+
+/// Pixels from tap to tap: twice as many on surfaces rougher than the threshold, with a band
+/// between, so that textured roughness does not show the border.
+int step_at(AtrousConstants constants, float roughness) {
+  float twice = smoothstep(constants.start_threshold - atrous_step_half_band,
+                           constants.start_threshold + atrous_step_half_band, roughness);
+  return int(round(float(1 << constants.level) * (1.0 + twice)));
+}
+
+/// Jitters the taps of large steps by up to a quarter step along the kernel, differently in every
+/// row and frame. Whole rows move together, so that neighbours read neighbours.
+ivec2 jitter(AtrousConstants constants, ivec2 pixel, int step) {
+  if (!has(constants, atrous_jitter) || step <= 4) return ivec2(0);
+  vec2 u = random_pair(uvec2(0, pixel.y), frame.sample_index, 48u + uint(constants.level),
+                       frame.seed);
+  ivec2 axes = min(ivec2(constants.columns, constants.rows), ivec2(1));
+  return axes * ivec2(round((u - 0.5) * 0.5 * float(step)));
+}
+
+vec2 tap_exponent(AtrousConstants constants, Center c, Guide q, vec4 value, vec2 offset) {
+  float shared_exponent =
+      depth_exponent(plane_distance(c.view_z, c.slope, c.curve, q.view_z, offset),
+                     depth_allowance(c.slope, offset, c.footprint), constants.depth_sigma) +
+      normal_exponent(dot(c.normal, q.normal), constants.normal_power) +
+      signal_exponent(c.roughness, q.roughness);
+  return shared_exponent + luminance_exponent(c.brightness, brightness(value), c.noise,
+                                              constants.luminance_sigma, smallest_difference);
+}
+
+/// Adds what lies at `tap`, inside of the images: `value` of the surface `q`.
+void add_tap(AtrousConstants constants, Center c, ivec2 tap, float exponent, Guide q, vec4 value,
+             inout vec4 sum, inout vec2 total) {
+  vec2 weight =
+      edge_weight(exponent + tap_exponent(constants, c, q, value, vec2(tap - c.pixel)));
+  sum += spread(weight) * value;
+  total += weight;
+}
+
+/// Of weighed taps, the pixel's own `value` among them.
+vec4 filtered_value(AtrousConstants constants, vec4 value, vec4 sum, vec2 total) {
+  vec4 result = sum / spread(total);
+  return has(constants, atrous_keep_variance) ? with_variance(result, variance_of(value)) : result;
+}
+
+#endif
