@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "scenes/generator/gltf/glb.hpp"
+#include "scenes/generator/scenes/material_balls.hpp"
 #include "scenes/generator/scenes/paper_scenes.hpp"
 #include "scenes/generator/scenes/test_scenes.hpp"
 #include "scenes/generator/sky/environment.hpp"
@@ -25,8 +26,9 @@ constexpr const char* usage =
     "usage: heliograph-scenes OUTPUT_DIR [--only NAME]... [--texture-size PIXELS]\n"
     "                         [--roughness R] [--shadow-angle DEGREES]\n"
     "names: cubes_distance, icosphere, glossy_sponza_1, glossy_sponza_2, glossy_sponza_3,\n"
-    "       shadow_objects, pillars, breakfast_room (each with its sky), sky, studio, tests;\n"
-    "       without any, all but glossy_sponza_2 and glossy_sponza_3\n"
+    "       shadow_objects, pillars, breakfast_room (each with its sky), sky, studio, tests,\n"
+    "       material_balls; without any, all but glossy_sponza_2, glossy_sponza_3 and\n"
+    "       material_balls\n"
     "--roughness gives the swept materials this roughness all over, --shadow-angle the sun this\n"
     "angular diameter.\n";
 
@@ -42,12 +44,13 @@ struct Options {
 
   bool wants(std::string_view name) const {
     if (!only.empty()) return std::find(only.begin(), only.end(), name) != only.end();
-    return name != "glossy_sponza_2" && name != "glossy_sponza_3";
+    return name != "glossy_sponza_2" && name != "glossy_sponza_3" && name != "material_balls";
   }
 };
 
 std::string_view parse_name(std::string_view name) {
-  if (name != "sky" && name != "studio" && name != "tests") find_paper_scene(name);
+  constexpr std::array<std::string_view, 4> others = {"sky", "studio", "tests", "material_balls"};
+  if (std::ranges::find(others, name) == others.end()) find_paper_scene(name);
   return name;
 }
 
@@ -142,6 +145,11 @@ void generate(const Options& options) {
     write_file(options.output / "white.hdr", encode_hdr(make_white_environment()), "radiance 1");
     write_document(options, make_furnace());
     write_document(options, make_mirror());
+  }
+  if (options.wants("material_balls")) {
+    write_file(options.output / "material_balls.hdr", encode_hdr(make_material_balls_environment()),
+               "softboxes");
+    write_document(options, make_material_balls());
   }
   if (options.wants("sky")) {
     const ClearSky sky = find_paper_scene("glossy_sponza_1").make_sky(sky_width, sky_height);

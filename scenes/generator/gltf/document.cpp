@@ -1,9 +1,16 @@
 #include "scenes/generator/gltf/document.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 
 namespace heliograph::scenes {
+
+bool Material::is_anisotropic() const {
+  return std::ranges::any_of(extensions, [](const MaterialExtension& extension) {
+    return extension.name == "KHR_materials_anisotropy";
+  });
+}
 
 int Document::add_material(Material material) {
   materials.push_back(std::move(material));

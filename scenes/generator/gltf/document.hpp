@@ -4,12 +4,22 @@
 #include <glm/gtc/quaternion.hpp>
 #include <optional>
 #include <string>
+#include <utility>
+#include <variant>
 #include <vector>
 
 #include "scenes/generator/geometry/mesh.hpp"
 #include "scenes/generator/textures/texture.hpp"
 
 namespace heliograph::scenes {
+
+/// An extension of glTF's materials: its whole name, and numbers and colours by their names.
+/// KHR_materials_emissive_strength comes from Material::emission.
+struct MaterialExtension {
+  using Member = std::pair<std::string, std::variant<float, glm::vec3>>;
+  std::string name;
+  std::vector<Member> members;
+};
 
 /// Factors are linear. A material without a recipe has no maps.
 struct Material {
@@ -21,9 +31,15 @@ struct Material {
   glm::vec3 emission{0.0f};  // may exceed 1: written with KHR_materials_emissive_strength
   float normal_scale = 1.0f;
   bool masked = false;
+  float alpha_cutoff = 0.5f;     // of a masked material
+  std::optional<float> opacity;  // blends the material with what is behind it
   bool double_sided = false;
   bool swept = false;  // takes part in the roughness sweep; written to the extras
   std::optional<float> uniform_roughness;  // in place of `roughness` and what the map says of it
+  std::vector<MaterialExtension> extensions;
+
+  /// Whether its highlights have a direction, that of the tangents.
+  bool is_anisotropic() const;
 };
 
 struct NamedMesh {

@@ -5,6 +5,8 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 #include <span>
+#include <string>
+#include <variant>
 
 #include "scenes/generator/parallel.hpp"
 
@@ -24,6 +26,15 @@ constexpr int wrap_repeat = 10497;
 
 Json to_json(glm::vec3 v) {
   return Json::array({v.x, v.y, v.z});
+}
+
+Json to_json(const MaterialExtension& extension) {
+  Json json = Json::object();
+  for (const auto& [name, value] : extension.members) {
+    const auto* number = std::get_if<float>(&value);
+    json[name] = number ? Json(*number) : to_json(std::get<glm::vec3>(value));
+  }
+  return json;
 }
 
 void fill_channel(Image& image, std::size_t channel, std::uint8_t value) {
@@ -119,9 +130,11 @@ int GlbWriter::add_texture(const std::string& name, const std::vector<std::uint8
 }
 
 Json GlbWriter::material_json(const Material& material) {
-  Json pbr = {{"baseColorFactor", {material.color.x, material.color.y, material.color.z, 1.0f}},
-              {"metallicFactor", material.metallic},
-              {"roughnessFactor", material.uniform_roughness.value_or(material.roughness)}};
+  Json pbr = {
+      {"baseColorFactor",
+       {material.color.x, material.color.y, material.color.z, material.opacity.value_or(1.0f)}},
+      {"metallicFactor", material.metallic},
+      {"roughnessFactor", material.uniform_roughness.value_or(material.roughness)}};
   Json json = {{"name", material.name}};
   const auto& pngs = pngs_[std::size_t(&material - document_.materials.data())];
   if (material.texture) {
@@ -143,7 +156,11 @@ Json GlbWriter::material_json(const Material& material) {
   }
   if (material.masked) {
     json["alphaMode"] = "MASK";
-    json["alphaCutoff"] = 0.5f;
+    json["alphaCutoff"] = material.alpha_cutoff;
+  }
+  if (material.opacity) json["alphaMode"] = "BLEND";
+  for (const MaterialExtension& extension : material.extensions) {
+    json["extensions"][extension.name] = to_json(extension);
   }
   if (material.double_sided) json["doubleSided"] = true;
   if (material.swept) json["extras"]["sweep"] = true;
@@ -158,16 +175,22 @@ void GlbWriter::write_materials() {
     if (document_.materials[i].uniform_roughness) fill_channel(set.surface, 1, 255);
     pngs_[i] = {encode_png(set.color), encode_png(set.normal), encode_png(set.surface)};
   });
-  bool emissive_strength = false;
+  std::vector<std::string> extensions;  // in the order of their first use
   bool textured = false;
   for (const Material& material : document_.materials) {
     // First the value: it adds images, and a growing object moves its members.
     Json json = material_json(material);
+    if (json.contains("extensions")) {
+      for (const auto& extension : json["extensions"].items()) {
+        if (std::ranges::find(extensions, extension.key()) == extensions.end()) {
+          extensions.push_back(extension.key());
+        }
+      }
+    }
     gltf_["materials"].push_back(std::move(json));
-    emissive_strength |= gltf_["materials"].back().contains("extensions");
     textured |= material.texture.has_value();
   }
-  if (emissive_strength) gltf_["extensionsUsed"].push_back("KHR_materials_emissive_strength");
+  for (const std::string& extension : extensions) gltf_["extensionsUsed"].push_back(extension);
   if (textured) {
     gltf_["samplers"].push_back({{"magFilter", filter_linear},
                                  {"minFilter", filter_trilinear},
@@ -189,8 +212,11 @@ void GlbWriter::write_meshes() {
     gltf_["accessors"][std::size_t(position)]["max"] = to_json(high);
     Json attributes = {{"POSITION", position}};
     attributes["NORMAL"] = add_attribute<glm::vec3>(named.mesh, &Vertex::normal, "VEC3");
-    if (document_.materials[std::size_t(named.material)].texture) {
+    const Material& material = document_.materials[std::size_t(named.material)];
+    if (material.texture || material.is_anisotropic()) {
       attributes["TANGENT"] = add_attribute<glm::vec4>(named.mesh, &Vertex::tangent, "VEC4");
+    }
+    if (material.texture) {
       attributes["TEXCOORD_0"] = add_attribute<glm::vec2>(named.mesh, &Vertex::uv, "VEC2");
     }
     Json primitive = {{"attributes", std::move(attributes)},

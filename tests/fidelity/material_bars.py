@@ -1,0 +1,69 @@
+"""Least SSIM of a ball of the scene `material_balls` beside the path traced truth, by its row.
+
+Of the balls of a row, the worst counts. WHOLE is for the chart of `material_chart.py` with its
+defaults, SMALL for that with --small. Either is what --print-bars prints: what was measured, less
+MARGIN, which noise and other devices may cost. A row that is missing here counts as missed.
+"""
+
+import math
+
+MARGIN = 0.02
+
+WHOLE = {
+    "dielectric_roughness": 0.9,
+    "metal_roughness": 0.9,
+    "ior": 0.9,
+    "specular": 0.9,
+    "specular_color": 0.9,
+    "clearcoat": 0.9,
+    "clearcoat_roughness": 0.9,
+    "sheen": 0.9,
+    "sheen_roughness": 0.9,
+    "iridescence": 0.9,
+    "iridescence_thickness": 0.9,
+    "anisotropy": 0.9,
+    "anisotropy_rotation": 0.9,
+    "emission": 0.9,
+    "transmission": 0.7,
+    "transmission_roughness": 0.7,
+    "volume_roughness": 0.7,
+    "volume_attenuation": 0.7,
+    "volume_ior": 0.7,
+    "dispersion": 0.7,
+    "diffuse_transmission": 0.7,
+    "diffuse_transmission_color": 0.7,
+    "alpha_blend": 0.7,
+    "alpha_mask": 0.7,
+}
+
+SMALL = {
+    "dielectric_roughness": 0.92,
+    "metal_roughness": 0.83,
+    "ior": 0.91,
+    "specular": 0.93,
+    "specular_color": 0.93,
+    "clearcoat": 0.9,
+    "clearcoat_roughness": 0.89,
+    "sheen": 0.9,
+    "sheen_roughness": 0.88,
+    "iridescence": 0.91,
+    "iridescence_thickness": 0.88,
+    "anisotropy": 0.82,
+    "anisotropy_rotation": 0.8,
+    "emission": 0.94,
+    "transmission": 0.84,
+    "transmission_roughness": 0.54,
+    "volume_roughness": 0.51,
+    "volume_attenuation": 0.66,
+    "volume_ior": 0.58,
+    "dispersion": 0.61,
+    "diffuse_transmission": 0.8,
+    "diffuse_transmission_color": 0.8,
+    "alpha_blend": 0.86,
+    "alpha_mask": 0.9,
+}
+
+
+def bar_of(measured):
+    """Of the least SSIM of a row: two decimals, not above what was measured less the margin."""
+    return math.floor((measured - MARGIN) * 100.0 + 1e-9) / 100.0
