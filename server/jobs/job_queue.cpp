@@ -16,8 +16,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int most_attempts = 5;
-constexpr double pause_after_failure = 5.0;  // of the database, seconds
-constexpr double expiry_interval = 30.0;
+constexpr double pause_after_failure = 5.0;     // of the database, seconds
+constexpr double longest_expiry_wait = 3600.0;  // the clock may be set
 
 double now() {
   return std::chrono::duration<double>(std::chrono::system_clock::now().time_since_epoch()).count();
@@ -201,17 +201,20 @@ bool JobQueue::is_stopping() {
   return stopping_;
 }
 
-/// The next job; where there is none, after a while or a change. Looking and waiting are one step
-/// under the lock: a job that is created between them would wait for the next change.
+/// The next job; where there is none, after a change or when a job expires. Looking and waiting are
+/// one step under the lock: a job that is created between them would wait for the next change.
 std::optional<BegunJob> JobQueue::begin_or_wait() {
   std::unique_lock lock(mutex_);
   if (stopping_) return std::nullopt;
   std::optional<BegunJob> job = store_.begin(now());
-  if (!job) {
-    queue_event_.wait_for(
-        lock, std::chrono::duration<double>(std::min(expiry_interval, options_.keep_seconds)));
+  if (job) return job;
+  if (const std::optional<double> expiry = store_.next_expiry()) {
+    const double seconds = std::clamp(*expiry - now(), 0.0, longest_expiry_wait);
+    queue_event_.wait_for(lock, std::chrono::duration<double>(seconds));
+  } else {
+    queue_event_.wait(lock);
   }
-  return job;
+  return std::nullopt;
 }
 
 void JobQueue::run() {

@@ -352,4 +352,10 @@ std::vector<std::string> JobStore::expire(double now) {
   return ids;
 }
 
+std::optional<double> JobStore::next_expiry() {
+  Statement row = database_.prepare("SELECT MIN(expires) FROM jobs");
+  if (!row.step()) return std::nullopt;
+  return optional_real(row, 0);
+}
+
 }  // namespace heliograph::jobs

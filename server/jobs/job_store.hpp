@@ -77,6 +77,8 @@ class JobStore {
 
   /// Forgets jobs that expired before `now`; gives their ids.
   std::vector<std::string> expire(double now);
+  /// When the next one expires; empty: none does.
+  std::optional<double> next_expiry();
 
  private:
   void create_tables();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
@@ -56,6 +57,8 @@ class Device {
   void wait(std::uint64_t submitted) const;
   /// Likewise, but no longer than that. @returns whether it is done
   bool wait_for(std::uint64_t submitted, std::chrono::nanoseconds time) const;
+  /// How often commands were submitted since it was made. Thread safe.
+  std::uint64_t submissions() const { return submitted_; }
   /// Records into a fresh command buffer, submits it and waits: for set-up work. Thread safe.
   void submit_once(const std::function<void(VkCommandBuffer)>& record) const;
 
@@ -80,8 +83,8 @@ class Device {
   std::filesystem::path cache_file_;
   bool labels_ = false;
   mutable std::mutex queue_mutex_;
-  VkSemaphore timeline_ = VK_NULL_HANDLE;  // counts what the device has done
-  mutable std::uint64_t submitted_ = 0;    // guarded by queue_mutex_
+  VkSemaphore timeline_ = VK_NULL_HANDLE;             // counts what the device has done
+  mutable std::atomic<std::uint64_t> submitted_ = 0;  // written under queue_mutex_
   mutable ProgramRegistry programs_;
 };
 

@@ -1,7 +1,6 @@
 #include "gpu/pipelines/shader_reload.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <future>
 #include <set>
 #include <utility>
@@ -12,8 +11,6 @@ namespace heliograph::gpu {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::chrono::milliseconds look_interval{300};
 
 bool same_interface(const ShaderBinding& a, const ShaderBinding& b) {
   return a.set == b.set && a.binding == b.binding && a.type == b.type && a.count == b.count &&
@@ -51,7 +48,7 @@ void add_lines(std::string& all, std::set<std::string>& lines, const std::string
 
 ShaderReload::ShaderReload(const Device& device, const fs::path& folder,
                            std::span<const ShaderBinary* const> embedded)
-    : device_(device), compiler_(folder) {
+    : device_(device), compiler_(folder), watch_(compiler_.folder()) {
   for (const ShaderBinary* shader : embedded) {
     Stage& stage = stages_[std::string(shader->name)];
     stage.embedded = shader;
@@ -59,15 +56,13 @@ ShaderReload::ShaderReload(const Device& device, const fs::path& folder,
   }
   check_files();
   apply();
-  thread_ = std::thread([this] { watch(); });
+  thread_ = std::thread([this] {
+    while (watch_.wait()) check_files();
+  });
 }
 
 ShaderReload::~ShaderReload() {
-  {
-    const std::lock_guard lock(mutex_);
-    stopping_ = true;
-  }
-  stop_.notify_all();
+  watch_.stop();
   thread_.join();
 }
 
@@ -80,15 +75,6 @@ void ShaderReload::listen(Listener listener) {
 std::string ShaderReload::error() const {
   const std::lock_guard lock(mutex_);
   return error_;
-}
-
-void ShaderReload::watch() {
-  std::unique_lock lock(mutex_);
-  while (!stop_.wait_for(lock, look_interval, [this] { return stopping_; })) {
-    lock.unlock();
-    check_files();
-    lock.lock();
-  }
 }
 
 void ShaderReload::check_files() {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <functional>
 #include <map>
 #include <mutex>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "gpu/device/device.hpp"
+#include "gpu/pipelines/folder_watch.hpp"
 #include "gpu/pipelines/shader_binary.hpp"
 #include "gpu/pipelines/shader_compiler.hpp"
 #include "gpu/pipelines/shader_report.hpp"
@@ -62,7 +62,6 @@ class ShaderReload {
   };
   using Words = std::map<std::string, std::vector<std::uint32_t>>;
 
-  void watch();
   void check_files();
   Stamps read_stamps() const;
   std::vector<Stage*> stages_to_compile(const Stamps& now);
@@ -73,6 +72,7 @@ class ShaderReload {
 
   const Device& device_;
   const ShaderCompiler compiler_;
+  FolderWatch watch_;
 
   // Of the compiling thread.
   Stamps stamps_;
@@ -87,8 +87,6 @@ class ShaderReload {
   std::atomic<std::uint64_t> version_ = 0;
 
   mutable std::mutex mutex_;  // guards what follows
-  std::condition_variable stop_;
-  bool stopping_ = false;
   std::string error_;
   Listener listener_;
 

@@ -198,6 +198,13 @@ void add_devices(Page& page, const session::RenderDevices& devices) {
        [](Loop loop) { return loop.load().sessions; });
   each("heliograph_device_frames_total", "Frames that the device has rendered.", "counter",
        [](Loop loop) { return loop.device_totals().frames; });
+  page.describe("heliograph_device_submissions_total",
+                "Times that commands were given to the device; none while nothing changes.",
+                "counter");
+  for (std::size_t i = 0; i < devices.count(); ++i) {
+    page.sample("heliograph_device_submissions_total", {{"device", std::to_string(i)}},
+                static_cast<double>(devices.engine(i).submissions()));
+  }
   each("heliograph_device_render_seconds_total", "Time for which the device rendered.", "counter",
        [](Loop loop) { return loop.device_totals().seconds; });
   page.describe("heliograph_device_free_memory_bytes",

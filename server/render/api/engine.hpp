@@ -73,6 +73,8 @@ class Engine {
   bool encodes_jpeg() const;
   std::uint32_t max_image_size() const;  // pixels, either side
   std::uint64_t validation_messages() const;
+  /// How often commands were given to the device since the start, to lost ones before it too.
+  std::uint64_t submissions() const;
   /// Called on a thread of its own whenever files of the shader folder have changed, and at once
   /// where they do not compile now.
   void on_shader_change(std::function<void(const ShaderReport&)> listener);
@@ -128,6 +130,7 @@ class Engine {
   mutable std::mutex mutex_;  // guards what follows
   std::function<void(const ShaderReport&)> shader_listener_;
   std::shared_ptr<Parts> parts_;
+  std::uint64_t submissions_before_ = 0;  // to devices that were lost
 };
 
 /// What Vulkan offers on this machine, a line per driver file and device with the reason why each

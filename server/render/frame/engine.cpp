@@ -107,6 +107,7 @@ void Engine::recreate() {
   auto made = std::make_shared<Parts>(options_);
   const std::lock_guard lock(mutex_);
   if (made->shader_reload) made->shader_reload->listen(shader_listener_);
+  submissions_before_ += parts_->device.submissions();
   parts_.swap(made);
 }
 
@@ -137,6 +138,11 @@ std::uint32_t Engine::max_image_size() const {
 
 std::uint64_t Engine::validation_messages() const {
   return current()->instance.validation_messages();
+}
+
+std::uint64_t Engine::submissions() const {
+  const std::lock_guard lock(mutex_);
+  return submissions_before_ + parts_->device.submissions();
 }
 
 std::shared_ptr<const SceneResources> Engine::upload(std::shared_ptr<const scene::Scene> scene,

@@ -127,8 +127,10 @@ TEST_F(Store, ExpiredJobsAreForgottenWithTheirFiles) {
   const protocol::JobFailure failure{.entry = 2, .scene = "helmet", .reason = "is broken"};
   store.end(id, {.state = JobState::partial, .failures = {failure}}, 2.0, 10.0);
   EXPECT_EQ(store.find(id)->failures.at(0), failure);
+  EXPECT_EQ(store.next_expiry(), 10.0);
   EXPECT_TRUE(store.expire(10.0).empty());
   EXPECT_EQ(store.expire(10.1), std::vector{id});
+  EXPECT_FALSE(store.next_expiry());
   EXPECT_FALSE(store.find(id));
   EXPECT_TRUE(store.find(waiting)) << "jobs that wait do not expire";
   EXPECT_EQ(store.bytes(), 0u);
