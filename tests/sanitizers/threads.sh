@@ -14,6 +14,7 @@ ninja -C "$folder" -j "$jobs" heliograph heliograph-scenes unit_session unit_str
 # what ran at the same time, so that one processor suffices.
 processor=$(taskset -cp $$ | sed 's/.*[^0-9]//')
 export HELIOGRAPH_TEST_TIME_FACTOR=10
+export TSAN_OPTIONS="suppressions=$root/tests/sanitizers/threads.supp ${TSAN_OPTIONS:-}"
 # Shared memory is where the sanitizer expects it only if the kernel places it as usual.
 exec taskset -c "$processor" setarch -R ctest --test-dir "$folder" --output-on-failure \
   -R '^(unit_(session|stream|net|jobs|scene)|protocol_(scenes|sessions|jobs|security|stream|framing|contract))$'

@@ -11,7 +11,7 @@ import time
 
 from harness.exposition import parse
 from harness.raw_socket import TEXT, RawSocket, frame
-from harness.server import ServerTestCase
+from harness.server import TIME_FACTOR, ServerTestCase
 from harness.viewer import Viewer
 
 STREAM = "/api/v1/sessions/main/stream.mjpg"
@@ -103,7 +103,7 @@ class Answers(ServerTestCase):
             await viewer.send(json.dumps([{"jsonrpc": "2.0", "id": i, "method": "frame.capture",
                                            "params": params} for i in range(32)]))
             try:
-                answers = await asyncio.wait_for(viewer.unasked.get(), 60)
+                answers = await asyncio.wait_for(viewer.unasked.get(), 60 * TIME_FACTOR)
             finally:
                 answered.set()
                 measuring.join()

@@ -118,7 +118,8 @@ TEST(Attributes, TangentsWithoutNormalsAreIgnored) {
   GltfBuilder builder = triangle();
   attributes_of(builder)["TANGENT"] =
       add_values(builder, f32, 4, {0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1});
-  for (const shared::Vertex& vertex : builder.import().meshes[0].vertices) {
+  const Scene scene = builder.import();
+  for (const shared::Vertex& vertex : scene.meshes[0].vertices) {
     EXPECT_EQ(vertex.normal, glm::vec3(0, 0, 1));
     EXPECT_NEAR(glm::dot(glm::vec3(vertex.tangent), vertex.normal), 0.0f, 1e-6f);
     EXPECT_NEAR(glm::length(glm::vec3(vertex.tangent)), 1.0f, 1e-6f);

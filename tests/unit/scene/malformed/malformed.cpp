@@ -10,7 +10,7 @@ namespace {
 
 // Bounds for small files, with a wide margin. Seconds of CPU time, so that other load does not
 // matter; sanitizers take several times as much time and memory.
-#if defined(__SANITIZE_ADDRESS__) || defined(__clang__)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || defined(__clang__)
 constexpr double max_seconds = 20.0;
 constexpr std::uint64_t max_bytes = 1024ull << 20;
 #else
