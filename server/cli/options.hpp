@@ -20,8 +20,8 @@ struct LogOptions {
 struct DeviceOptions {
   std::vector<std::string> devices;  // as given; device_names() tells them apart
   std::string tracer = "auto";
-  std::string shader_dir;  // empty: the embedded shaders
-  std::string gpu_jpeg = "off";
+  std::string shader_dir;        // empty: the embedded shaders
+  std::string gpu_jpeg = "off";  // for viewers, whom only a server has
 };
 
 struct SettingsOptions {
@@ -72,7 +72,7 @@ struct ServeOptions {
   scene::ImportLimits limits;
   std::uint64_t scene_cache_bytes = 1ull << 30;
   SettingsOptions settings;
-  DeviceOptions device;
+  DeviceOptions device{.gpu_jpeg = "automatic"};
   LogOptions log;
   bool print_config = false;  // instead of serving
 };

@@ -12,7 +12,8 @@ layout(set = 1, binding = 1, std430) readonly buffer TablesBlock { JpegTables ta
 layout(set = 1, binding = 2, std430) writeonly buffer Slots { uint slots[]; };
 layout(set = 1, binding = 3, std430) writeonly buffer Lengths { uint lengths[]; };  // bytes
 layout(push_constant) uniform Constants {
-  uvec2 size;     // of the image, pixels
+  uvec2 source;   // of the image, pixels
+  uvec2 size;     // that is encoded: no larger
   uint mcus;      // in all
   uint mcus_wide;
   uint percent;   // of the tables for quality 50
@@ -30,9 +31,32 @@ shared uint nonzero[threads];                             // a bit for each of e
 shared uint counts[threads];
 shared uint block_counts[jpeg_interval_blocks];
 
+uvec3 color_at(uvec2 pixel) {
+  return uvec3(imageLoad(shown, ivec2(pixel)).rgb * 255.0 + 0.5);
+}
+
+/// The mean of the area that a pixel of the encoded image covers. Weights are in units of 1 / `size`
+/// of a pixel of the image; sums are exact up to 2^24 pixels.
+uvec3 mean_at(uvec2 pixel) {
+  uvec2 begin = pixel * source;
+  uvec2 end = begin + source;
+  uvec3 sum = uvec3(0u);
+  for (uint y = begin.y / size.y; y * size.y < end.y; ++y) {
+    uint high = min(end.y, (y + 1u) * size.y) - max(begin.y, y * size.y);
+    uvec3 row = uvec3(0u);
+    for (uint x = begin.x / size.x; x * size.x < end.x; ++x) {
+      uint wide = min(end.x, (x + 1u) * size.x) - max(begin.x, x * size.x);
+      row += wide * color_at(uvec2(x, y));
+    }
+    sum += high * row;
+  }
+  uint area = source.x * source.y;
+  return (sum + area / 2u) / area;
+}
+
 // Fixed point with 16 bits behind the point, rounded as libjpeg does. Around zero.
 ivec3 ycc_of(ivec2 pixel) {
-  ivec3 c = ivec3(imageLoad(shown, pixel).rgb * 255.0 + 0.5);
+  ivec3 c = ivec3(size == source ? color_at(uvec2(pixel)) : mean_at(uvec2(pixel)));
   return ivec3((19595 * c.r + 38470 * c.g + 7471 * c.b + 32768) / 65536 - 128,
                ((32768 * c.b - 11059 * c.r - 21709 * c.g) + 8388608 + 32767) / 65536 - 128,
                ((32768 * c.r - 27439 * c.g - 5329 * c.b) + 8388608 + 32767) / 65536 - 128);
@@ -212,6 +236,7 @@ void main() {
   uint thread = gl_LocalInvocationIndex;
   uint interval = gl_WorkGroupID.x;
   uint first_mcu = interval * jpeg_interval_mcus;
+  if (first_mcu >= mcus) return;
   uint interval_mcus = min(jpeg_interval_mcus, mcus - first_mcu);
   for (uint i = thread; i < most_words; i += threads) coded[i] = 0u;
   for (uint i = thread; i < jpeg_slot_words; i += threads) stuffed[i] = 0u;

@@ -27,7 +27,7 @@ uint byte_of(uint interval, uint i) {
 void main() {
   uint interval = gl_WorkGroupID.x;
   uint all = places[intervals];
-  if (all == 0u) return;
+  if (interval >= intervals || all == 0u) return;
   uint first = places[interval];
   uint end = places[interval + 1u];
   // No interval is shorter than a word.

@@ -222,7 +222,7 @@ nlohmann::json measure(render::Engine& engine, RecordingTracer& tracer, const sc
   }
   Run run(engine, resources, extent, settings);
   run.renderer.set_draw_scale(options.draw_scale);
-  if (options.jpeg > 0) run.renderer.request_jpeg(options.jpeg);
+  if (options.jpeg > 0) run.renderer.request_jpeg(render::JpegRequest{options.jpeg});
   if (options.overlap) run.renderer.keep_buffers(false);
   const scene::Camera camera = first_camera(scene, extent);
   for (int i = 0; i < options.warm_up + options.frames; ++i) {

@@ -59,9 +59,19 @@ struct CacheUse {
   std::uint64_t bytes = 0;  // allocated, however few cells there are
 };
 
+/// What the device makes of a frame. Of a smaller image each pixel is the mean of its area.
+struct JpegRequest {
+  int quality = 80;   // 1 to 100
+  int percent = 100;  // of the frame's width and height, 1 to 100
+
+  bool operator==(const JpegRequest&) const = default;
+};
+
 /// A frame that the device has encoded.
 struct DeviceJpeg {
-  int quality = 0;                  // 1 to 100
+  JpegRequest made;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
   std::vector<std::uint8_t> bytes;  // a file, with chroma at half the size; empty: there is none
 };
 

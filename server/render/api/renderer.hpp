@@ -87,9 +87,10 @@ class Renderer {
   /// Makes them, on any thread, beside other renderers, while nothing else of this one is called.
   void prepare();
 
-  /// The next frames come as a JPEG of this quality, 1 to 100, where the engine encodes and the
-  /// output is shown, and with pixels only where those cost nothing; absent: they come as pixels.
-  void request_jpeg(std::optional<int> quality);
+  /// The next frames come as such a JPEG where the engine encodes and the output is shown, and with
+  /// pixels only where those cost nothing; absent: they come as pixels. So do frames of more than
+  /// 16.8 million pixels that would be made smaller.
+  void request_jpeg(std::optional<JpegRequest> request);
   /// The pixels of the last frame, which came without; empty where a change since has discarded
   /// them, or another frame has begun.
   std::vector<std::uint8_t> read_pixels();

@@ -14,7 +14,7 @@ namespace heliograph::render {
 
 CompiledFrame::CompiledFrame(const Engine::Parts& parts, const FrameInputs& in,
                              const FrameConstantsSlots& constants_buffers, VkExtent2D extent,
-                             bool keeps_buffers, const int& jpeg_quality)
+                             bool keeps_buffers, const std::optional<JpegRequest>& jpeg)
     : inputs(in),
       background(in.moving.environment().background(in.settings.background)),
       pool(parts.device, 5, 48),
@@ -24,10 +24,9 @@ CompiledFrame::CompiledFrame(const Engine::Parts& parts, const FrameInputs& in,
   share_sets(parts, constants_buffers);
   outputs = declare_frame(plan, inputs);
   if (parts.jpeg_tables && can_encode_jpeg(parts.device, extent)) {
-    encoded =
-        encode_jpeg(plan, parts.programs, parts.jpeg_tables, outputs.output, extent, jpeg_quality);
+    encoded = encode_jpeg(plan, parts.programs, parts.jpeg_tables, outputs.output, extent, jpeg);
   }
-  plan.read_back(outputs.output, [&jpeg_quality] { return jpeg_quality == 0; });
+  plan.read_back(outputs.output, [&jpeg] { return !jpeg; });
   plan.keep(outputs.radiance);
   plan.keep(outputs.mean);
   plan.keep(outputs.mean_weight);

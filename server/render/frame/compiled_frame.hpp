@@ -18,11 +18,11 @@ namespace heliograph::render {
 /// passes that the settings asked for when it was made.
 struct CompiledFrame {
   /// References in `inputs`, and the others, outlive this. `keeps_buffers`: whether all images can
-  /// be read after a frame, or just the output and the histories. `jpeg_quality`: of each frame, 0
-  /// where its pixels come back.
+  /// be read after a frame, or just the output and the histories. `jpeg`: of each frame, none where
+  /// its pixels come back.
   CompiledFrame(const Engine::Parts& parts, const FrameInputs& inputs,
                 const FrameConstantsSlots& constants_buffers, VkExtent2D extent, bool keeps_buffers,
-                const int& jpeg_quality);
+                const std::optional<JpegRequest>& jpeg);
 
   /// An image as of the last frame, and how much of it, from the first texel, was drawn.
   struct DrawnImage {

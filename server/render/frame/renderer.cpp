@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "render/api/buffer_names.hpp"
+#include "render/frame/buffer_list.hpp"
 #include "render/frame/probe.hpp"
 #include "render/frame/renderer_state.hpp"
-#include "render/passes/sampling/plan_samples.hpp"
 #include "render/passes/shading/draw_shading.hpp"
 #include "render/views/debug_view.hpp"
 #include "render/views/text_overlay.hpp"
@@ -162,8 +162,8 @@ bool Renderer::has_buffers() const {
   return state_->has_buffers;
 }
 
-void Renderer::request_jpeg(std::optional<int> quality) {
-  state_->requested_jpeg = quality;
+void Renderer::request_jpeg(std::optional<JpegRequest> request) {
+  state_->requested_jpeg = request;
 }
 
 std::vector<std::uint8_t> Renderer::read_pixels() {
@@ -205,7 +205,7 @@ bool Renderer::begin(const std::function<bool()>& canceled) {
   state.use_newest_shaders();
   CompiledFrame& compiled = state.frame_plan();
   begun.new_buffers = std::exchange(state.new_plan, false);
-  begun.jpeg_quality = state.jpeg_quality = state.next_jpeg_quality();
+  begun.jpeg = state.jpeg = state.next_jpeg();
   compiled.has_frame = false;
   state.stale = false;
   state.has_buffers = false;
@@ -256,7 +256,7 @@ Frame Renderer::finish() {
   compiled.has_frame = newest;
   state.has_buffers = newest && compiled.plan.keeps_images();
 
-  Frame frame = state.output(begun.jpeg_quality);
+  Frame frame = state.output(begun.jpeg);
   if (state.parts.shader_reload) {
     draw_text(state.parts.shader_reload->error(), frame.rgba, frame.width, frame.height);
   }

@@ -4,6 +4,7 @@
 
 #include "render/frame/buffer_list.hpp"
 #include "render/frame/probe.hpp"
+#include "render/passes/sampling/plan_samples.hpp"
 #include "render/passes/shading/draw_shading.hpp"
 #include "render/views/debug_view.hpp"
 #include "render/views/view_colors.hpp"
@@ -62,7 +63,7 @@ CompiledFrame& Renderer::State::frame_plan() {
                            parts.ltc_table,
                            extent};
   compiled = std::make_unique<CompiledFrame>(parts, inputs, constants_buffers, extent,
-                                             buffers_needed(), jpeg_quality);
+                                             buffers_needed(), jpeg);
   compiled->plan.set_drawn(drawn());
   new_plan = true;
   return *compiled;
@@ -122,13 +123,14 @@ std::optional<FloatImage> Renderer::State::read(std::string_view name) {
                  {constants, exposure_factor(compiled->plan, compiled->outputs.exposure)});
 }
 
-int Renderer::State::next_jpeg_quality() const {
-  const bool encodes = requested_jpeg && compiled->encoded && shows_output();
-  return encodes ? *requested_jpeg : 0;
+std::optional<JpegRequest> Renderer::State::next_jpeg() const {
+  const bool encodes = requested_jpeg && compiled->encoded && shows_output() &&
+                       can_scale_jpeg(extent, requested_jpeg->percent);
+  return encodes ? requested_jpeg : std::nullopt;
 }
 
-/// Of the frame that was finished last, which came as a JPEG of that quality; 0: as pixels.
-Frame Renderer::State::output(int encoded_quality) {
+/// Of the frame that was finished last, which came as that JPEG; none: as pixels.
+Frame Renderer::State::output(const std::optional<JpegRequest>& made) {
   if (!shows_output()) {
     const std::string& shown = settings.view.buffer;
     if (const auto values = read(shown)) return visualise(shown, *values);
@@ -136,9 +138,7 @@ Frame Renderer::State::output(int encoded_quality) {
   Frame frame;
   frame.width = extent.width;
   frame.height = extent.height;
-  if (encoded_quality > 0) {
-    frame.jpeg = {encoded_quality, read_jpeg(compiled->plan, *compiled->encoded, encoded_quality)};
-  }
+  if (made) frame.jpeg = read_jpeg(compiled->plan, *compiled->encoded, *made);
   // A frame that is canceled, as on processors, leaves none to read later.
   if (frame.jpeg.bytes.empty() || parts.device.is_cpu()) frame.rgba = compiled->plan.read();
   return frame;

@@ -36,7 +36,7 @@ struct Renderer::State {
     std::chrono::steady_clock::time_point start;
     std::optional<float> posing;  // milliseconds; absent: nothing moved
     bool new_buffers = false;
-    int jpeg_quality = 0;
+    std::optional<JpegRequest> jpeg;
     std::uint32_t samples = 0;  // with it
   };
 
@@ -49,8 +49,8 @@ struct Renderer::State {
   void use_newest_shaders();
   bool can_begin_another() const;
   void count_sample();
-  Frame output(int encoded_quality);
-  int next_jpeg_quality() const;
+  Frame output(const std::optional<JpegRequest>& made);
+  std::optional<JpegRequest> next_jpeg() const;
   /// Whether all buffers of the next frame are kept: a view of one of them needs them, too.
   bool buffers_needed() const {
     return keeps_buffers ||
@@ -91,8 +91,8 @@ struct Renderer::State {
   protocol::Settings settings;
   VkExtent2D extent{640, 360};  // of the finished frame
   float draw_scale = 1.0f;
-  std::optional<int> requested_jpeg;
-  int jpeg_quality = 0;  // of the newest frame that has begun; 0: its pixels come back
+  std::optional<JpegRequest> requested_jpeg;
+  std::optional<JpegRequest> jpeg;  // of the newest frame that has begun; none: pixels come back
 
   std::optional<SectionTracer> section_tracer;  // of a plan with section planes
   std::unique_ptr<CompiledFrame> compiled;      // absent until it is needed: see frame_plan()

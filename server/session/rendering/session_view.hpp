@@ -114,7 +114,7 @@ class SessionView {
   void begin_next_frame();
   float next_draw_scale() const;
   void begin_frame(double seconds);
-  std::optional<int> wanted_jpeg(ViewState state);
+  std::optional<render::JpegRequest> wanted_jpeg(ViewState state);
   struct BegunFrame;
   Clock::time_point began_on_device(const BegunFrame& begun, Clock::time_point device_free) const;
   std::shared_ptr<RenderedFrame> describe(render::Frame frame, const BegunFrame& begun,
@@ -131,7 +131,7 @@ class SessionView {
     ViewState view_state;  // that it is drawn for
     Clock::time_point start;
     bool follows = false;       // it has begun before the device was done with the one before
-    std::optional<int> jpeg{};  // its quality, if it comes as one
+    bool as_jpeg = false;       // then its pixels are gone once another one has begun
     std::uint64_t version = 0;  // of the session's state, like the next ones
     std::uint32_t rev = 0;
     std::uint32_t width = 0;

@@ -50,7 +50,7 @@ bool SessionView::can_begin_following() {
          renderer_->can_begin_another() && readers_.empty() &&
          !session_->timeline().in_lockstep() && next_draw_scale() == draw_scale_ &&
          session_->viewers().can_accept_two_frames(device_time_) &&
-         wanted_jpeg(ViewState::moving) == begun_.front().jpeg &&
+         wanted_jpeg(ViewState::moving).has_value() == begun_.front().as_jpeg &&
          !(session_->viewers().wants_depth() && depth_pays());
 }
 
@@ -78,7 +78,7 @@ void SessionView::begin_frame(double seconds) {
   // A viewer that moves the camera does not wait for a frame of the view that it leaves.
   const ViewState view_state = next_view_state(view_inputs());
   const Interruption by = interruption(view_inputs());
-  const std::optional<int> jpeg = wanted_jpeg(view_state);
+  const std::optional<render::JpegRequest> jpeg = wanted_jpeg(view_state);
   renderer_->request_jpeg(jpeg);
   const bool began = renderer_->begin([&] {
     if (by == Interruption::none) return false;
@@ -90,7 +90,7 @@ void SessionView::begin_frame(double seconds) {
     begun_.push_back({.view_state = view_state,
                       .start = start,
                       .follows = in_flight(),
-                      .jpeg = jpeg,
+                      .as_jpeg = jpeg.has_value(),
                       .version = state_.version,
                       .rev = state_.rev,
                       .width = state_.width,
@@ -102,9 +102,11 @@ void SessionView::begin_frame(double seconds) {
 }
 
 /// What a step shows may be read after the next one has changed the frame.
-std::optional<int> SessionView::wanted_jpeg(ViewState state) {
+std::optional<render::JpegRequest> SessionView::wanted_jpeg(ViewState state) {
   if (!engine_.encodes_jpeg() || session_->timeline().in_lockstep()) return std::nullopt;
-  return session_->viewers().common_jpeg_quality(draw_policy(state).purpose);
+  const auto common = session_->viewers().common_jpeg(draw_policy(state).purpose);
+  if (!common) return std::nullopt;
+  return render::JpegRequest{.quality = common->quality, .percent = common->scale};
 }
 
 /// Not before the device was done with the frame before it.

@@ -1,6 +1,7 @@
 #include "session/viewers/broadcast.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -61,9 +62,15 @@ protocol::FrameHeader merged(const protocol::FrameHeader& rendered,
   return header;
 }
 
+/// What the device has encoded of the frame.
+std::optional<stream::EncodingVariant> device_jpeg(const render::Frame& frame) {
+  if (frame.jpeg.bytes.empty()) return std::nullopt;
+  return stream::EncodingVariant{.scale = frame.jpeg.made.percent,
+                                 .quality = frame.jpeg.made.quality};
+}
+
 bool is_device_jpeg(const render::Frame& frame, const stream::VariantRequest& request) {
-  return !frame.jpeg.bytes.empty() &&
-         request.variant == stream::EncodingVariant{.quality = frame.jpeg.quality};
+  return device_jpeg(frame) == request.variant;
 }
 
 /// Whether the frame comes with all that is sent of it.
@@ -120,8 +127,8 @@ struct Broadcast::Encoding {
       if (is_device_jpeg(frame, request)) {
         encoded_by = protocol::PassKind::device;
         frames.push_back(timed(encoded_by, [&] {
-          return stream::FrameEncoder::wrap_jpeg(frame.width, frame.height, request.variant,
-                                                 frame.jpeg.bytes);
+          return stream::FrameEncoder::wrap_jpeg(frame.jpeg.width, frame.jpeg.height,
+                                                 request.variant, frame.jpeg.bytes);
         }));
       } else {
         frames.push_back(
@@ -217,8 +224,8 @@ bool Broadcast::pump() {
   if (!due_ || encoding() || !services_.encoder.has_room()) return false;
   if (!session_->viewers().needs_frame(number_)) return false;
   const render::Frame& frame = due_->frame;
-  EncodingPlan plan =
-      session_->viewers().plan(number_, due_purpose_, std::uint64_t{frame.width} * frame.height);
+  const std::uint64_t pixels = std::uint64_t{frame.width} * frame.height;
+  EncodingPlan plan = session_->viewers().plan(number_, due_purpose_, pixels, device_jpeg(frame));
   if (!suffices(frame, plan) && !take_pixels()) {
     due_.reset();
     return false;

@@ -36,6 +36,12 @@ stream::OutgoingFrame make_outgoing(const stream::ViewerPacer::Taken& taken,
   return {.header = std::move(bytes), .frame = taken.frame};
 }
 
+/// What the viewer asked for: its link may be given less.
+template <class Viewer>
+stream::EncodingVariant asked_by(const Viewer& viewer) {
+  return {.codec = viewer.stream.codec, .quality = viewer.stream.quality};
+}
+
 /// Adds the measurements of one viewer's stream.
 template <class Viewer>
 void complete(protocol::StatsFrame& stats, const Viewer& viewer) {
@@ -216,20 +222,23 @@ bool ViewerSet::needs_frame(std::uint64_t number) const {
   });
 }
 
-std::optional<int> ViewerSet::common_jpeg_quality(FramePurpose purpose) {
+std::optional<stream::EncodingVariant> ViewerSet::common_jpeg(FramePurpose purpose) {
   if (purpose == FramePurpose::final) return std::nullopt;
   const std::lock_guard lock(mutex_);
-  std::optional<int> quality;
+  std::optional<stream::EncodingVariant> common;
   for (auto& [id, viewer] : viewers_) {
     if (!viewer.started || viewer.stream.paused) continue;
     const stream::EncodingVariant variant = requested_variant(viewer, purpose);
-    if (variant != stream::EncodingVariant{.quality = quality.value_or(variant.quality)}) return {};
-    quality = variant.quality;
+    if (variant.codec != protocol::StreamCodec::jpeg || variant != common.value_or(variant)) {
+      return std::nullopt;
+    }
+    common = variant;
   }
-  return quality;
+  return common;
 }
 
-EncodingPlan ViewerSet::plan(std::uint64_t number, FramePurpose purpose, std::uint64_t pixels) {
+EncodingPlan ViewerSet::plan(std::uint64_t number, FramePurpose purpose, std::uint64_t pixels,
+                             const std::optional<stream::EncodingVariant>& made) {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
   pixels_ = pixels;
@@ -247,7 +256,8 @@ EncodingPlan ViewerSet::plan(std::uint64_t number, FramePurpose purpose, std::ui
       continue;
     }
     active.push_back(&viewer);
-    requests.push_back({.variant = requested_variant(viewer, purpose),
+    const stream::EncodingVariant variant = requested_variant(viewer, purpose);
+    requests.push_back({.variant = made && takes(viewer, purpose, *made) ? *made : variant,
                         .ready = ready,
                         .decoder = viewer.pacer.decoder(),
                         .budget = viewer.pacer.link().budget()});
@@ -299,19 +309,6 @@ void ViewerSet::publish_stats(protocol::StatsFrame stats) {
   }
 }
 
-void ViewerSet::send_all(std::string_view text, std::string_view key) {
-  send_others({}, text, key);
-}
-
-void ViewerSet::send_others(const std::string& except, std::string_view text,
-                            std::string_view key) {
-  const std::lock_guard lock(mutex_);
-  for (const auto& [id, viewer] : viewers_) {
-    if (id == except) continue;
-    if (const auto link = viewer.link.lock()) link->send(std::string(text), key);
-  }
-}
-
 ViewerTotals ViewerSet::totals() const {
   const std::lock_guard lock(mutex_);
   ViewerTotals totals{.viewers = viewers_.size(), .sent = departed_};
@@ -359,12 +356,18 @@ bool ViewerSet::viewer_needs_frame(const Viewer& viewer, std::uint64_t number,
   return viewer.started && viewer.offered < number && viewer.pacer.has_room(now);
 }
 
+bool ViewerSet::takes(const Viewer& viewer, FramePurpose purpose,
+                      const stream::EncodingVariant& made) {
+  const stream::EncodingVariant asked = asked_by(viewer);
+  const bool whole = purpose == FramePurpose::interactive || made.scale == asked.scale;
+  return whole && stream::LinkController::may_choose(asked, made);
+}
+
 stream::EncodingVariant ViewerSet::requested_variant(Viewer& viewer, FramePurpose purpose) const {
-  const stream::EncodingVariant requested{.codec = viewer.stream.codec,
-                                          .quality = viewer.stream.quality};
+  const stream::EncodingVariant asked = asked_by(viewer);
   // Frames of a static image are few and each is better than the last: a video gains nothing.
-  if (purpose != FramePurpose::interactive) return viewer.pacer.link().choose_refining(requested);
-  return viewer.pacer.link().choose(requested, pixels_);
+  if (purpose != FramePurpose::interactive) return viewer.pacer.link().choose_refining(asked);
+  return viewer.pacer.link().choose(asked, pixels_);
 }
 
 stream::SharedFrame ViewerSet::find_encoding(const Viewer& viewer, FramePurpose purpose,

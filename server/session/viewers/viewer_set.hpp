@@ -118,11 +118,14 @@ class ViewerSet {
   void discard_latest();
   /// Whether a viewer could be sent the frame of this number, and was not yet. Numbers increase.
   bool needs_frame(std::uint64_t number) const;
-  /// The quality of the JPEG of full size that every viewer would be sent of such a frame now;
-  /// absent: some would be sent something else, or there are no viewers.
-  std::optional<int> common_jpeg_quality(FramePurpose purpose);
+  /// The JPEG that every viewer would be sent of such a frame now; absent: some would be sent
+  /// something else than others, or there are no viewers.
+  std::optional<stream::EncodingVariant> common_jpeg(FramePurpose purpose);
   /// How to encode the frame of this number, which has so many pixels, for viewers that need it.
-  EncodingPlan plan(std::uint64_t number, FramePurpose purpose, std::uint64_t pixels);
+  /// `made`: the JPEG that there is of it. Those are sent it whose link might have been given it:
+  /// what their link is given by now comes with the next frame.
+  EncodingPlan plan(std::uint64_t number, FramePurpose purpose, std::uint64_t pixels,
+                    const std::optional<stream::EncodingVariant>& made = {});
   /// Distributes the encodings of the frame that the last plan was for.
   void publish(std::uint64_t number, FramePurpose purpose, std::vector<stream::SharedFrame> frames);
   /// Sends `stats`, completed for each viewer, to subscribers whose interval has passed; the stats
@@ -167,6 +170,9 @@ class ViewerSet {
   static void offer(Viewer& viewer, const stream::SharedFrame& frame);
   bool viewer_needs_frame(const Viewer& viewer, std::uint64_t number, Clock::time_point now) const;
   stream::EncodingVariant requested_variant(Viewer& viewer, FramePurpose purpose) const;
+  /// Whether a JPEG that was made of such a frame before will do for the viewer.
+  static bool takes(const Viewer& viewer, FramePurpose purpose,
+                    const stream::EncodingVariant& made);
   static stream::SharedFrame find_encoding(const Viewer& viewer, FramePurpose purpose,
                                            const std::vector<stream::SharedFrame>& frames);
   static void announce(const Viewer& viewer);

@@ -4,7 +4,7 @@
 #include "protocol/json/jsonrpc.hpp"
 #include "session/viewers/viewer_set.hpp"
 
-// Participants of a session and control.
+// Participants of a session, control, and messages to all.
 
 namespace heliograph::session {
 
@@ -171,6 +171,19 @@ void ViewerSet::announce_participants(protocol::SessionInfo session) {
     session.viewers = describe_participants(id);
     link->send(protocol::make_notification<protocol::notifications::session_changed>(session),
                "session.changed");
+  }
+}
+
+void ViewerSet::send_all(std::string_view text, std::string_view key) {
+  send_others({}, text, key);
+}
+
+void ViewerSet::send_others(const std::string& except, std::string_view text,
+                            std::string_view key) {
+  const std::lock_guard lock(mutex_);
+  for (const auto& [id, viewer] : viewers_) {
+    if (id == except) continue;
+    if (const auto link = viewer.link.lock()) link->send(std::string(text), key);
   }
 }
 

@@ -18,8 +18,9 @@ struct Arrival {
 };
 
 /// Adapts the moving frames of one viewer to its network link. Derives a byte budget per frame from
-/// acknowledgements: multiplicative decrease as soon as they are late, additive increase while they
-/// are in time (AIMD), with half a second between two changes and longer after a decrease.
+/// acknowledgements: multiplicative decrease when they stay late, additive increase while they are
+/// in time (AIMD), with half a second between two changes and longer after a decrease. Where frames
+/// are in time by so much that larger ones would be, too, it increases to those in one step.
 ///
 /// Late is relative to the delay of an empty frame. That base delay does not include queueing: it
 /// is extrapolated from the delays of larger and smaller frames, which every decrease provides. If
@@ -34,6 +35,9 @@ class LinkController {
   EncodingVariant choose(const EncodingVariant& requested, std::uint64_t pixels);
   /// The variant of a refining frame of a static view: full size, of less quality on a slow link.
   EncodingVariant choose_refining(const EncodingVariant& requested) const;
+  /// Whether `made`, a JPEG, is what some link would be given of a frame for which `requested` was
+  /// asked: the choice may have gone on to another one since the frame was made.
+  static bool may_choose(const EncodingVariant& requested, const EncodingVariant& made);
 
   /// Bytes per frame; infinite while nothing limits it.
   double budget() const { return budget_; }
@@ -53,6 +57,7 @@ class LinkController {
 
   bool late(const Arrival& arrival) const;
   void lower(Clock::time_point now);
+  double proven_budget() const;
   void evaluate_decrease();
   std::size_t jpeg_level(const EncodingVariant& requested) const;
   std::size_t video_level(std::uint64_t pixels) const;
@@ -62,8 +67,9 @@ class LinkController {
   double unit_bytes_ = 0.0;  // of a JPEG whose relative_bytes() is 1; smoothed
   std::size_t level_ = 0;
   bool late_ = false;  // whether the last arrival was late
-  Mean now_;           // of consecutive arrivals that were late, or in time
-  Mean before_;        // before the last decrease, until it is evaluated
+  Clock::time_point late_since_;
+  Mean now_;     // of consecutive arrivals that were late, or in time
+  Mean before_;  // before the last decrease, until it is evaluated
   double budget_before_ = unlimited;
   bool evaluating_ = false;
   Clock::time_point settled_at_;  // earlier arrivals were sent before the last change

@@ -92,8 +92,12 @@ void ViewerPacer::measure(const Sent& sent, std::chrono::microseconds held, Cloc
   const bool first = goodput_ == 0.0;
   const double weight = first ? 1.0 : newest_frame_weight;
   goodput_ += weight * (rate - goodput_);
-  round_trip_ += microseconds(
-      static_cast<std::int64_t>(weight * static_cast<double>((sample - round_trip_).count())));
+  const auto follow = [weight](microseconds& smoothed, microseconds newest) {
+    const auto apart = static_cast<double>((newest - smoothed).count());
+    smoothed += microseconds(static_cast<std::int64_t>(weight * apart));
+  };
+  follow(round_trip_, sample);
+  follow(in_flight_for_, total);
   if (!sent.measurable) return;
   const auto interval = std::max(sent.rendering, min_interval_);
   window_.arrived({.delay = sample, .interval = interval, .ahead = sent.ahead}, now);
@@ -125,7 +129,12 @@ bool ViewerPacer::has_room(Clock::time_point now) const {
 }
 
 bool ViewerPacer::has_room_for_two(Clock::time_point now, Clock::duration apart) const {
-  return has_room(now) && in_flight_.size() + 1 < window_.size() && min_interval_ <= apart;
+  if (!has_room(now) || min_interval_ > apart) return false;
+  const auto stays = [&](const Sent& sent) {
+    return goodput_ == 0.0 || sent.at + in_flight_for_ > now + apart;
+  };
+  const auto staying = std::count_if(in_flight_.begin(), in_flight_.end(), stays);
+  return static_cast<std::size_t>(staying) + 1 < window_.size();
 }
 
 }  // namespace heliograph::stream

@@ -59,7 +59,8 @@ class ViewerPacer {
 
   /// Whether a new frame could be sent at once.
   bool has_room(Clock::time_point now) const;
-  /// Likewise of that frame and one more, so long behind it.
+  /// Likewise of that frame and one more, so long behind it: by then those in flight may be
+  /// acknowledged, as soon as they usually are.
   bool has_room_for_two(Clock::time_point now, Clock::duration apart) const;
   bool frame_pending() const { return pending_ != nullptr; }
   /// The last video frame offered to the viewer, if the video can continue from it.
@@ -113,6 +114,7 @@ class ViewerPacer {
   Clock::time_point next_send_;
   PacerTotals totals_;
   std::chrono::microseconds round_trip_{0};
+  std::chrono::microseconds in_flight_for_{0};  // a frame, smoothed; with the client's time
   double goodput_ = 0.0;
   Clock::time_point last_acknowledgement_;
   LinkController link_;

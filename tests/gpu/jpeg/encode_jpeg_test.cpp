@@ -72,7 +72,8 @@ glm::ivec3 scene(int x, int y) {
   return glm::ivec3(glm::vec3(tile, tile * 0.9f, 0.75f) * (light + grain));
 }
 
-Bytes encode_on_device(const Pixels& image, int quality) {
+render::DeviceJpeg make_on_device(const Pixels& image,
+                                  const std::optional<render::JpegRequest>& request) {
   const gpu::Buffer tables = render::make_jpeg_tables(device());
   const VkExtent2D size{static_cast<std::uint32_t>(image.width),
                         static_cast<std::uint32_t>(image.height)};
@@ -81,10 +82,37 @@ Bytes encode_on_device(const Pixels& image, int quality) {
   plan.get(shown).upload(std::as_bytes(std::span(image.rgba)));
   EXPECT_TRUE(render::can_encode_jpeg(device(), size));
   const render::EncodedOutput encoded =
-      render::encode_jpeg(plan, engine().parts().programs, tables, shown, size, quality);
+      render::encode_jpeg(plan, engine().parts().programs, tables, shown, size, request);
   plan.compile();
   plan.execute();
-  return render::read_jpeg(plan, encoded, quality);
+  return render::read_jpeg(plan, encoded, *request);
+}
+
+Bytes encode_on_device(const Pixels& image, int quality) {
+  return make_on_device(image, render::JpegRequest{.quality = quality}).bytes;
+}
+
+/// The mean of the area of each pixel, rounded.
+Pixels smaller(const Pixels& image, int width, int height) {
+  const auto overlap = [](int at, int whole, int i, int parts) {
+    return std::max(0,
+                    std::min((at + 1) * whole, (i + 1) * parts) - std::max(at * whole, i * parts));
+  };
+  return paint(width, height, [&](int x, int y) {
+    glm::ivec3 sum(0);
+    for (int from_y = y * image.height / height; from_y < image.height; ++from_y) {
+      const int high = overlap(y, image.height, from_y, height);
+      if (high == 0) break;
+      for (int from_x = x * image.width / width; from_x < image.width; ++from_x) {
+        const int wide = overlap(x, image.width, from_x, width);
+        if (wide == 0) break;
+        const std::uint8_t* const c = &image.rgba[std::size_t(4 * (from_y * image.width + from_x))];
+        sum += high * wide * glm::ivec3(c[0], c[1], c[2]);
+      }
+    }
+    const int area = image.width * image.height;
+    return (sum + area / 2) / area;
+  });
 }
 
 Bytes encode_by_library(const Pixels& image, int quality, int flags) {
@@ -160,6 +188,31 @@ TEST(EncodeJpeg, DecodesToPixelsOfLibraryWhateverIsShown) {
       expect_same_as_library(paint(133, 71, color), quality);
     }
   }
+}
+
+TEST(EncodeJpeg, MakesImageSmallerByMeansOfAreas) {
+  const struct {
+    int width, height, percent, made_width, made_height;
+  } cases[]{{200, 120, 50, 100, 60},  {200, 120, 75, 150, 90}, {133, 71, 50, 67, 36},
+            {319, 181, 75, 239, 136}, {3, 1, 1, 1, 1},         {64, 48, 99, 63, 48}};
+  for (const auto& one : cases) {
+    SCOPED_TRACE(std::to_string(one.width) + "x" + std::to_string(one.height) + " to " +
+                 std::to_string(one.percent));
+    const Pixels image = paint(one.width, one.height, one.percent == 50 ? noise : scene);
+    const render::DeviceJpeg made =
+        make_on_device(image, render::JpegRequest{.quality = 80, .percent = one.percent});
+    EXPECT_EQ(made.width, std::uint32_t(one.made_width));
+    EXPECT_EQ(made.height, std::uint32_t(one.made_height));
+    const Pixels mean = smaller(image, one.made_width, one.made_height);
+    EXPECT_EQ(decode(made.bytes, mean),
+              decode(encode_by_library(mean, 80, TJFLAG_ACCURATEDCT), mean));
+  }
+}
+
+TEST(EncodeJpeg, ScalesOnlyWhereSumsAreExact) {
+  EXPECT_TRUE(render::can_scale_jpeg({4096, 4096}, 50));
+  EXPECT_FALSE(render::can_scale_jpeg({4097, 4096}, 50));
+  EXPECT_TRUE(render::can_scale_jpeg({8192, 8192}, 100));
 }
 
 // The stream's encoder takes the library's fast DCT.
@@ -255,8 +308,9 @@ class DeviceJpeg : public testing::Test {
   static void expect_same_as_library(const render::Frame& frame, Bytes rgba) {
     ASSERT_EQ(rgba.size(), bytes);
     const Pixels pixels{96, 54, std::move(rgba)};
-    EXPECT_EQ(decode(frame.jpeg.bytes, pixels),
-              decode(encode_by_library(pixels, frame.jpeg.quality, TJFLAG_ACCURATEDCT), pixels));
+    EXPECT_EQ(
+        decode(frame.jpeg.bytes, pixels),
+        decode(encode_by_library(pixels, frame.jpeg.made.quality, TJFLAG_ACCURATEDCT), pixels));
   }
 
   render::Engine engine_;
@@ -271,9 +325,9 @@ class HostDeviceJpeg : public DeviceJpeg {
 TEST_F(DeviceJpeg, ComesInPlaceOfPixelsWhichCanBeReadLater) {
   ASSERT_TRUE(engine_.encodes_jpeg());
   EXPECT_EQ(renderer_->render().rgba.size(), bytes);
-  renderer_->request_jpeg(80);
+  renderer_->request_jpeg(render::JpegRequest{.quality = 80});
   const render::Frame frame = renderer_->render();
-  EXPECT_EQ(frame.jpeg.quality, 80);
+  EXPECT_EQ(frame.jpeg.made.quality, 80);
   EXPECT_TRUE(frame.rgba.empty());
   expect_same_as_library(frame, renderer_->read_pixels());
 
@@ -285,7 +339,7 @@ TEST_F(DeviceJpeg, ComesInPlaceOfPixelsWhichCanBeReadLater) {
   protocol::Settings settings = plain();
   settings.view.buffer = "gbuffer.normals";
   ASSERT_TRUE(renderer_->set_settings(settings));
-  renderer_->request_jpeg(80);
+  renderer_->request_jpeg(render::JpegRequest{.quality = 80});
   const render::Frame view = renderer_->render();
   EXPECT_TRUE(view.jpeg.bytes.empty()) << "debug views are coloured on the host";
   EXPECT_EQ(view.rgba.size(), bytes);
@@ -298,9 +352,26 @@ TEST_F(DeviceJpeg, ComesInPlaceOfPixelsWhichCanBeReadLater) {
   EXPECT_TRUE(renderer_->read_pixels().empty());
 }
 
+/// One plan makes JPEGs of every size, frame by frame.
+TEST_F(DeviceJpeg, IsAsSmallAsEachFrameAsksFor) {
+  const render::JpegRequest requests[]{
+      {.quality = 80}, {.quality = 56, .percent = 50}, {.quality = 90}};
+  for (const render::JpegRequest& request : requests) {
+    renderer_->request_jpeg(request);
+    const render::Frame frame = renderer_->render();
+    EXPECT_EQ(frame.jpeg.made, request);
+    EXPECT_EQ(frame.width, 96u);
+    const Pixels whole{96, 54, renderer_->read_pixels()};
+    const int percent = request.percent;
+    const Pixels mean = percent == 100 ? whole : smaller(whole, 48, 27);
+    EXPECT_EQ(decode(frame.jpeg.bytes, mean),
+              decode(encode_by_library(mean, request.quality, TJFLAG_ACCURATEDCT), mean));
+  }
+}
+
 TEST_F(HostDeviceJpeg, ComesBesidePixelsThatLieInMemoryOfHost) {
   if (!engine_.parts().device.is_cpu()) GTEST_SKIP() << "only on devices that are processors";
-  renderer_->request_jpeg(70);
+  renderer_->request_jpeg(render::JpegRequest{.quality = 70});
   const render::Frame frame = renderer_->render();
   expect_same_as_library(frame, frame.rgba);
 }

@@ -39,7 +39,8 @@ class BroadcastTest : public testing::Test {
               std::uint64_t start_us = 0) {
     auto frame = std::make_shared<RenderedFrame>();
     frame->frame.width = frame->frame.height = 16;
-    frame->frame.jpeg = {.quality = 80, .bytes = encoded_};
+    frame->frame.jpeg = {
+        .made = made_, .width = made_side_, .height = made_side_, .bytes = encoded_};
     frame->header.sample_count = samples;
     frame->header.render_start_us = start_us;
     broadcast_->rendered(std::move(frame), purpose);
@@ -70,6 +71,8 @@ class BroadcastTest : public testing::Test {
   }
 
   const Bytes encoded_{1, 2, 3};
+  render::JpegRequest made_{.quality = 80};
+  std::uint32_t made_side_ = 16;
   Bytes pixels_ = Bytes(16 * 16 * 4, 128);
   int pixels_read_ = 0;
   std::size_t due_ = 0;
@@ -85,7 +88,9 @@ class BroadcastTest : public testing::Test {
 TEST_F(BroadcastTest, SendsJpegOfDeviceToViewersOfItsQuality) {
   join("a", 80);
   join("b", 80);
-  EXPECT_EQ(session_->viewers().common_jpeg_quality(FramePurpose::interactive), 80);
+  EXPECT_EQ(session_->viewers().common_jpeg(FramePurpose::interactive),
+            stream::EncodingVariant{.quality = 80});
+  EXPECT_FALSE(session_->viewers().common_jpeg(FramePurpose::final));
   render();
   ASSERT_TRUE(pump(1));
   const stream::SharedFrame frame = sent("a");
@@ -102,13 +107,63 @@ TEST_F(BroadcastTest, SendsJpegOfDeviceToViewersOfItsQuality) {
 TEST_F(BroadcastTest, ReadsPixelsForViewersOfOtherQualities) {
   join("a", 80);
   join("b", 40);
-  EXPECT_FALSE(session_->viewers().common_jpeg_quality(FramePurpose::interactive));
+  EXPECT_FALSE(session_->viewers().common_jpeg(FramePurpose::interactive));
   render();
   ASSERT_TRUE(pump(2));
   EXPECT_EQ(pixels_read_, 1);
   ASSERT_TRUE(sent("b"));
   EXPECT_EQ(sent("a")->payload, encoded_);
   EXPECT_EQ(measurements_.totals().encoded_by.at(protocol::PassKind::host), 1u);
+}
+
+TEST_F(BroadcastTest, SendsJpegThatTheLinkWasGivenWhenTheFrameBegan) {
+  join("a", 80);
+  made_.quality = 68;
+  render();
+  ASSERT_TRUE(pump(1));
+  const stream::SharedFrame frame = sent("a");
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->payload, encoded_);
+  EXPECT_EQ(frame->header.quality, 68);
+  EXPECT_EQ(pixels_read_, 0) << "the link's next choice is for the next frame";
+}
+
+TEST_F(BroadcastTest, SendsJpegThatTheDeviceHasMadeSmaller) {
+  join("a", 80);
+  made_ = {.quality = 56, .percent = 75};
+  made_side_ = 12;
+  render();
+  ASSERT_TRUE(pump(1));
+  const stream::SharedFrame frame = sent("a");
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->payload, encoded_);
+  EXPECT_EQ(frame->header.width, 12);
+  EXPECT_EQ(frame->header.height, 12);
+  EXPECT_EQ(frame->variant.scale, 75) << "what the link is measured with";
+  EXPECT_EQ(pixels_read_, 0);
+}
+
+TEST_F(BroadcastTest, EncodesAgainWhatNoLinkOfTheViewerIsGiven) {
+  join("a", 80);
+  made_.quality = 75;
+  render();
+  ASSERT_TRUE(pump(1));
+  const stream::SharedFrame frame = sent("a");
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->header.quality, 80);
+  EXPECT_EQ(pixels_read_, 1);
+}
+
+TEST_F(BroadcastTest, FramesOfAStaticImageAreWhole) {
+  join("a", 80);
+  made_ = {.quality = 56, .percent = 75};
+  made_side_ = 12;
+  render(FramePurpose::refining);
+  ASSERT_TRUE(pump(1));
+  const stream::SharedFrame frame = sent("a");
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->header.width, 16);
+  EXPECT_EQ(pixels_read_, 1);
 }
 
 TEST_F(BroadcastTest, SendsRefiningFramesAgainAfterSomeSeconds) {

@@ -197,6 +197,32 @@ TEST_F(ViewerSetTest, AcceptsFramesWhileTheAckWindowIsOpen) {
   EXPECT_EQ(show(viewers_, 3).size(), 1u);
 }
 
+TEST_F(ViewerSetTest, AsksForTheJpegThatAllLinksAreGiven) {
+  EXPECT_FALSE(viewers_.common_jpeg(FramePurpose::interactive)) << "no viewers";
+  const Joined slow = join();
+  ASSERT_TRUE(viewers_.configure(slow.id, {.max_fps = 240.0}));
+  const stream::EncodingVariant whole{};
+  EXPECT_EQ(viewers_.common_jpeg(FramePurpose::interactive), whole);
+  std::uint32_t number = 0;
+  while (viewers_.common_jpeg(FramePurpose::interactive) == whole) {
+    ASSERT_LT(++number, 60u) << "frames that are late are not made smaller";
+    (void)viewers_.plan(number, FramePurpose::interactive, 16 * 16, whole);
+    const auto frame = encoded(number, whole);
+    frame->moving = true;
+    frame->payload.resize(50'000);
+    viewers_.publish(number, FramePurpose::interactive, {frame});
+    ASSERT_TRUE(viewers_.take(slow.id));
+    std::this_thread::sleep_for(std::chrono::milliseconds(35));
+    ASSERT_TRUE(viewers_.acknowledge(slow.id, {.frame_seq = number}));
+  }
+  const auto less = viewers_.common_jpeg(FramePurpose::interactive);
+  ASSERT_TRUE(less);
+  EXPECT_LT(stream::relative_bytes(*less), stream::relative_bytes(whole));
+  EXPECT_FALSE(viewers_.common_jpeg(FramePurpose::final));
+  const Joined fast = join();
+  EXPECT_FALSE(viewers_.common_jpeg(FramePurpose::interactive)) << "of two links";
+}
+
 TEST_F(ViewerSetTest, KeepsTheTotalsOfViewersThatLeft) {
   Joined viewer = join();
   show(viewers_, 1);

@@ -141,6 +141,29 @@ TEST_F(ViewerPacerTest, RoundTripExcludesTheClientsProcessing) {
   EXPECT_NEAR(pacer_.goodput(), 1000.0 / 0.030, 300.0);
 }
 
+TEST_F(ViewerPacerTest, HasRoomForTwoWhereThoseInFlightAreAcknowledgedByThen) {
+  const milliseconds apart(5);
+  EXPECT_TRUE(pacer_.has_room_for_two(now_, apart));
+  pacer_.offer(frame(1));
+  take();
+  EXPECT_FALSE(pacer_.has_room_for_two(now_, apart)) << "how long that takes is not known";
+  now_ += milliseconds(3);
+  acknowledge(1, milliseconds(2));
+  pacer_.offer(frame(2));
+  take();
+  EXPECT_TRUE(pacer_.has_room_for_two(now_, apart));
+  EXPECT_FALSE(pacer_.has_room_for_two(now_, milliseconds(2))) << "its client's time counts, too";
+  pacer_.offer(frame(3));
+  take();
+  EXPECT_FALSE(pacer_.has_room_for_two(now_, apart)) << "there is no room for one";
+}
+
+TEST_F(ViewerPacerTest, HasNoRoomForTwoWhereTheRateLimitHoldsTheSecondBack) {
+  pacer_.set_max_rate(100.0);
+  EXPECT_TRUE(pacer_.has_room_for_two(now_, milliseconds(10)));
+  EXPECT_FALSE(pacer_.has_room_for_two(now_, milliseconds(9)));
+}
+
 TEST_F(ViewerPacerTest, LateMovingFramesLowerTheBudgetButStillsDoNot) {
   const auto send = [&](bool moving) {
     auto made = std::make_shared<EncodedFrame>();

@@ -1,5 +1,6 @@
 #include "render/passes/jpeg/encode_jpeg.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "render/resources/tables/jpeg_tables.hpp"
@@ -16,6 +17,7 @@ struct JpegCodeBindings {
   gpu::WriteBuffer<Stage, std::uint32_t> lengths;
 };
 struct JpegCodeConstants {
+  glm::uvec2 source;
   glm::uvec2 size;
   std::uint32_t mcus;
   std::uint32_t mcus_wide;
@@ -40,6 +42,14 @@ struct JpegJoinBindings {
 constexpr std::uint32_t code_threads = 192;  // of each interval
 constexpr std::uint32_t join_threads = 64;
 constexpr std::uint32_t most_side = 65535;  // of a JPEG
+constexpr std::uint64_t most_scaled_pixels = std::uint64_t{1} << 24;
+
+VkExtent2D encoded_size(VkExtent2D size, int percent) {
+  const auto side = [percent](std::uint32_t whole) {
+    return std::max(1u, (whole * static_cast<std::uint32_t>(percent) + 50u) / 100u);
+  };
+  return {side(size.width), side(size.height)};
+}
 
 VkExtent2D mcus_of(VkExtent2D size) {
   return gpu::FrameSize::squares(shared::jpeg_mcu_side).of(size);
@@ -63,8 +73,13 @@ bool can_encode_jpeg(const gpu::Device& device, VkExtent2D size) {
          slot_words(intervals) * sizeof(std::uint32_t) <= device.limits().maxStorageBufferRange;
 }
 
+bool can_scale_jpeg(VkExtent2D size, int percent) {
+  return percent == 100 || std::uint64_t{size.width} * size.height <= most_scaled_pixels;
+}
+
 EncodedOutput encode_jpeg(gpu::FramePlan& plan, const Programs& programs, const gpu::Buffer& tables,
-                          gpu::ImageRef shown, VkExtent2D size, const int& quality) {
+                          gpu::ImageRef shown, VkExtent2D size,
+                          const std::optional<JpegRequest>& request) {
   const auto program = [&programs](const gpu::ShaderBinary& shader) -> gpu::ProgramSource {
     return [&programs, &shader]() -> const gpu::ComputeProgram& {
       return programs.compute(shader, ~0u);
@@ -83,44 +98,54 @@ EncodedOutput encode_jpeg(gpu::FramePlan& plan, const Programs& programs, const 
   const gpu::BufferRef places = words("jpeg.places", intervals + 1);
   const EncodedOutput encoded{size, returned_words("jpeg.length", 1),
                               returned_words("jpeg.joined", slot_words(intervals))};
+  // Of a smaller image fewer workgroups do something.
+  const auto used_intervals = [size, &request] {
+    return intervals_of(encoded_size(size, request->percent));
+  };
   plan.only_when(
-      [&quality] { return quality > 0; },
+      [&request] { return request.has_value(); },
       [&] {
         plan.pass("jpeg.code", program(shaders::jpeg_code))
             .bind<JpegCodeBindings>(
                 {.shown = shown, .tables = plan.import(tables), .slots = slots, .lengths = lengths})
-            .constants([size, &quality] {
-              const VkExtent2D mcus = mcus_of(size);
+            .constants([size, &request] {
+              const VkExtent2D made = encoded_size(size, request->percent);
+              const VkExtent2D mcus = mcus_of(made);
               return JpegCodeConstants{{size.width, size.height},
+                                       {made.width, made.height},
                                        mcus.width * mcus.height,
                                        mcus.width,
-                                       jpeg_percent(quality)};
+                                       jpeg_percent(request->quality)};
             })
             .dispatch({intervals * code_threads, 1});
         plan.pass("jpeg.place", program(shaders::jpeg_place))
             .bind<JpegPlaceBindings>(
                 {.lengths = lengths, .places = places, .report = encoded.length})
-            .constants(intervals)
+            .constants(used_intervals)
             .dispatch({1, 1});
         plan.pass("jpeg.join", program(shaders::jpeg_join))
             .bind<JpegJoinBindings>(
                 {.slots = slots, .lengths = lengths, .places = places, .joined = encoded.joined})
-            .constants(intervals)
+            .constants(used_intervals)
             .dispatch({intervals * join_threads, 1});
       });
   return encoded;
 }
 
-std::vector<std::uint8_t> read_jpeg(const gpu::FramePlan& plan, const EncodedOutput& encoded,
-                                    int quality) {
+DeviceJpeg read_jpeg(const gpu::FramePlan& plan, const EncodedOutput& encoded,
+                     const JpegRequest& made) {
+  const VkExtent2D size = encoded_size(encoded.size, made.percent);
+  DeviceJpeg jpeg{.made = made, .width = size.width, .height = size.height, .bytes = {}};
   std::uint32_t length = 0;
   std::memcpy(&length, plan.latest(encoded.length).mapped(), sizeof length);
-  if (length == 0) return {};
-  std::vector<std::uint8_t> file = jpeg_header(encoded.size.width, encoded.size.height, quality);
+  if (length == 0) return jpeg;
+  const std::vector<std::uint8_t> header = jpeg_header(size.width, size.height, made.quality);
   const auto* const coded =
       reinterpret_cast<const std::uint8_t*>(plan.latest(encoded.joined).mapped());
-  file.insert(file.end(), coded, coded + length);
-  return file;
+  jpeg.bytes.reserve(header.size() + length);
+  jpeg.bytes.assign(header.begin(), header.end());
+  jpeg.bytes.insert(jpeg.bytes.end(), coded, coded + length);
+  return jpeg;
 }
 
 }  // namespace heliograph::render
