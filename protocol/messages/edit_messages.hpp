@@ -121,7 +121,8 @@ struct EditDocument {
         field("environment", &EditDocument::environment,
               "The environment; absent: it stays as it is."),
         field("section", &EditDocument::section,
-              "Planes that cut the scene open, as section.set; absent: none."),
+              "Planes that cut the scene open and the colour of their caps, as section.set; "
+              "absent: no planes."),
     };
   }
   bool operator==(const EditDocument&) const = default;

@@ -39,6 +39,8 @@ struct MaterialInfo {
   std::optional<float> iridescence_thickness_maximum;
   std::optional<float> anisotropy;
   std::optional<float> anisotropy_rotation;
+  std::optional<float> diffuse_transmission;
+  std::optional<Vec3> diffuse_transmission_color;
   std::optional<float> transmission;
   std::optional<float> thickness;
   std::optional<float> attenuation_distance;
@@ -91,6 +93,11 @@ struct MaterialInfo {
         field("anisotropy_rotation", &MaterialInfo::anisotropy_rotation,
               "Of that direction, from the tangent or the texture's direction to the bitangent.")
             .unit("radians"),
+        field("diffuse_transmission", &MaterialInfo::diffuse_transmission,
+              "Fraction of the diffuse light that leaves at the other side, factor on the texture, "
+              "if any."),
+        field("diffuse_transmission_color", &MaterialInfo::diffuse_transmission_color,
+              "Linear colour of that light, factor on the texture, if any."),
         field("transmission", &MaterialInfo::transmission,
               "Fraction of light that passes, factor on the texture, if any."),
         field("thickness", &MaterialInfo::thickness,
@@ -146,6 +153,8 @@ struct MaterialPatch {
   Change<float> iridescence_thickness_maximum;
   Change<float> anisotropy;
   Change<float> anisotropy_rotation;
+  Change<float> diffuse_transmission;
+  Change<Vec3> diffuse_transmission_color;
   Change<float> transmission;
   Change<float> thickness;
   Change<float> attenuation_distance;
@@ -203,6 +212,12 @@ struct MaterialPatch {
               "Of that direction, from the tangent or the texture's direction to the bitangent.")
             .range(-6.5, 6.5)
             .unit("radians"),
+        field("diffuse_transmission", &MaterialPatch::diffuse_transmission,
+              "Fraction of the diffuse light that leaves at the other side.")
+            .range(0, 1),
+        field("diffuse_transmission_color", &MaterialPatch::diffuse_transmission_color,
+              "Linear colour of that light.")
+            .range(0, 1),
         field("transmission", &MaterialPatch::transmission,
               "Fraction of light that passes, of materials whose file lets light through.")
             .range(0, 1),

@@ -336,6 +336,7 @@ struct CameraOrbit {
   std::optional<float> distance;
   std::optional<float> dolly;
   std::optional<std::uint32_t> seq;
+  std::optional<std::uint32_t> scene_rev;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -355,6 +356,8 @@ struct CameraOrbit {
         field("seq", &CameraOrbit::seq,
               "The client's sequence number; frames that show this camera echo it as "
               "input_seq_echo."),
+        field("scene_rev", &CameraOrbit::scene_rev,
+              "That of the camera from which the movement began, as in camera.set."),
     };
   }
   bool operator==(const CameraOrbit&) const = default;

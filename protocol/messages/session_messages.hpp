@@ -165,6 +165,7 @@ struct Camera {
   float vertical_fov = 45.0f;
   std::optional<std::string> name;
   bool fitted = false;
+  std::uint32_t scene_rev = 0;
   std::uint32_t rev = 0;
 
   static constexpr auto fields() {
@@ -178,6 +179,8 @@ struct Camera {
         field("fitted", &Camera::fitted,
               "Whether the server has placed it to show the whole scene, and no viewer has moved "
               "it since."),
+        field("scene_rev", &Camera::scene_rev,
+              "Revision from which on its scene is shown; for camera.set and camera.orbit."),
         field("rev", &Camera::rev, "Revision of the session's state."),
     };
   }
@@ -192,6 +195,7 @@ struct CameraSet {
   std::optional<float> focal_length;
   std::optional<std::string> name;
   std::optional<std::uint32_t> seq;
+  std::optional<std::uint32_t> scene_rev;
 
   static constexpr auto fields() {
     return std::tuple{
@@ -218,6 +222,9 @@ struct CameraSet {
         field("seq", &CameraSet::seq,
               "The client's sequence number; frames that show this camera echo it as "
               "input_seq_echo."),
+        field("scene_rev", &CameraSet::scene_rev,
+              "That of the camera from which the movement began: fails where another scene is "
+              "shown by now. Absent: moves the camera of whichever scene is shown."),
     };
   }
   bool operator==(const CameraSet&) const = default;

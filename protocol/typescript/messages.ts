@@ -318,6 +318,10 @@ export interface MaterialPatch {
   clearcoat_normal_scale?: number | null;
   /** Perceptual roughness of the clear coat. */
   clearcoat_roughness?: number | null;
+  /** Fraction of the diffuse light that leaves at the other side. */
+  diffuse_transmission?: number | null;
+  /** Linear colour of that light. */
+  diffuse_transmission_color?: Vector3 | null;
   /** How far the colours are bent apart: 20 / Abbe number. */
   dispersion?: number | null;
   /** Linear emitted radiance. */
@@ -404,7 +408,9 @@ export interface EditDocument {
   materials?: EditDocumentMaterials[];
   /** Names of the file's lights that are removed. */
   removed_lights?: string[];
-  /** Planes that cut the scene open, as section.set; absent: none. */
+  /**
+   * Planes that cut the scene open and the colour of their caps, as section.set; absent: no planes.
+   */
   section?: Section;
   /** Slots of materials with another image than in the file, or without one. */
   textures?: EditDocumentTextures[];
@@ -518,6 +524,8 @@ export interface Camera {
   name: string | null;
   /** Revision of the session's state. */
   rev: number;
+  /** Revision from which on its scene is shown; for camera.set and camera.orbit. */
+  scene_rev: number;
   /** The point at the centre of the image. [metres] */
   target: Vector3;
   /** The up direction of the image. */
@@ -540,6 +548,11 @@ export interface CameraSetParams {
    * applied on top.
    */
   name?: string;
+  /**
+   * That of the camera from which the movement began: fails where another scene is shown by now.
+   * Absent: moves the camera of whichever scene is shown.
+   */
+  scene_rev?: number;
   /** The client's sequence number; frames that show this camera echo it as input_seq_echo. */
   seq?: number;
   /** The point at the centre of the image. [metres] */
@@ -558,6 +571,8 @@ export interface CameraOrbitParams {
   dolly?: number;
   /** Positive raises the camera, negative lowers it; it stops short of the poles. [degrees] */
   pitch?: number;
+  /** That of the camera from which the movement began, as in camera.set. */
+  scene_rev?: number;
   /** The client's sequence number; frames that show this camera echo it as input_seq_echo. */
   seq?: number;
   /** Rotation about the up axis, counter-clockwise seen from above. [degrees] */
@@ -940,6 +955,10 @@ export interface MaterialInfo {
   clearcoat_normal_scale?: number;
   /** Perceptual roughness of the clear coat, factor on the texture, if any. */
   clearcoat_roughness?: number;
+  /** Fraction of the diffuse light that leaves at the other side, factor on the texture, if any. */
+  diffuse_transmission?: number;
+  /** Linear colour of that light, factor on the texture, if any. */
+  diffuse_transmission_color?: Vector3;
   /** How far the colours are bent apart: 20 / Abbe number. */
   dispersion?: number;
   /** Linear emitted radiance, factor on the texture, if any. */

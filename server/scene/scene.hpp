@@ -40,7 +40,8 @@ struct Image {
   bool srgb = false;
   std::vector<std::uint8_t> pixels;
   std::shared_ptr<const std::vector<std::uint8_t>> file =
-      nullptr;  // encoded file, for decoding again
+      nullptr;           // encoded file, for decoding again
+  bool damaged = false;  // missing or damaged: one white texel takes its place
 };
 
 enum class Filter { nearest, linear };
@@ -177,6 +178,8 @@ struct MaterialLayers {
   float iridescence_thickness_maximum = 400.0f;
   float anisotropy = 0.0f;
   float anisotropy_rotation = 0.0f;  // radians, from the tangent toward the bitangent
+  float diffuse_transmission = 0.0f;
+  glm::vec3 diffuse_transmission_color{1.0f};
 
   shared::TextureSlot specular_texture = no_texture_slot();
   shared::TextureSlot specular_color_texture = no_texture_slot();
@@ -190,6 +193,8 @@ struct MaterialLayers {
   shared::TextureSlot iridescence_texture = no_texture_slot();
   shared::TextureSlot iridescence_thickness_texture = no_texture_slot();
   shared::TextureSlot anisotropy_texture = no_texture_slot();
+  shared::TextureSlot diffuse_transmission_texture = no_texture_slot();
+  shared::TextureSlot diffuse_transmission_color_texture = no_texture_slot();
 };
 
 enum class Interpolation { step, linear, cubic_spline };

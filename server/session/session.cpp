@@ -110,6 +110,7 @@ void Session::copy_from(const Session& other) {
   core_.reference.copy_from(from.reference);
   buffers_ = other.buffers_;
   core_.changed();
+  core_.scene_rev = core_.rev;
 }
 
 void Session::follow(const std::shared_ptr<Session>& follower, Session& leader) {

@@ -43,7 +43,7 @@ Result<protocol::CameraSet> with_field_of_view(protocol::CameraSet request, floa
 Result<Camera> SessionCamera::get() const {
   const std::lock_guard lock(core_.mutex);
   if (const Result<void> loaded = core_.require_shown_scene(); !loaded) return loaded.error();
-  return core_.shown_camera().message(core_.rev);
+  return core_.camera_message();
 }
 
 std::uint64_t SessionCamera::moves() const {
@@ -54,6 +54,7 @@ std::uint64_t SessionCamera::moves() const {
 Result<Camera> SessionCamera::set(const protocol::CameraSet& request, const std::string& by) {
   const std::lock_guard lock(core_.mutex);
   if (const Result<void> loaded = core_.require_shown_scene(); !loaded) return loaded.error();
+  if (const auto meant = core_.require_scene_of(request.scene_rev); !meant) return meant.error();
   const auto chosen = with_field_of_view(request, core_.settings.lens.sensor_height);
   if (!chosen) return chosen.error();
   const auto set = core_.shown_camera().set(*chosen, *core_.shown_scene(), by);
@@ -64,6 +65,7 @@ Result<Camera> SessionCamera::set(const protocol::CameraSet& request, const std:
 Result<Camera> SessionCamera::orbit(const protocol::CameraOrbit& request, const std::string& by) {
   const std::lock_guard lock(core_.mutex);
   if (const Result<void> loaded = core_.require_shown_scene(); !loaded) return loaded.error();
+  if (const auto meant = core_.require_scene_of(request.scene_rev); !meant) return meant.error();
   if (const auto moved = core_.shown_camera().orbit(request, by); !moved) return moved.error();
   return publish(by);
 }
@@ -89,8 +91,7 @@ Result<Camera> SessionCamera::fit(const protocol::CameraFit& request, const std:
 
 Camera SessionCamera::publish(const std::string& by) {
   core_.changed();
-  const protocol::CameraChanged message{.camera = core_.shown_camera().message(core_.rev),
-                                        .by = by};
+  const protocol::CameraChanged message{.camera = core_.camera_message(), .by = by};
   core_.notify_others_latest<protocol::notifications::camera_changed>(by, message);
   core_.lead_camera(by);
   return message.camera;
@@ -122,7 +123,7 @@ Result<protocol::BookmarkList> SessionCamera::change_bookmarks(const std::string
 Result<protocol::BookmarkList> SessionCamera::add_bookmark(const protocol::BookmarkAdd& request,
                                                            const std::string& by) {
   return change_bookmarks(by, [&](const std::string& scene) {
-    return core_.bookmarks.add(scene, request, core_.camera.message(core_.rev));
+    return core_.bookmarks.add(scene, request, core_.camera.message(core_.rev, core_.scene_rev));
   });
 }
 

@@ -30,13 +30,16 @@ Result<void> SessionScene::show(LoadedScene scene, const protocol::EditDocument&
   core_.resources = std::move(scene.resources);
   ++core_.scene_loads;
   core_.timeline.reset_clock();
+  std::optional<std::uint32_t> seen_since;
   if (core_.first_view) {
     core_.camera = std::move(core_.first_view->camera);
+    seen_since = core_.first_view->scene_rev;
     core_.first_view.reset();
   } else {
     core_.camera.reset(*core_.scene, core_.aspect());
   }
   core_.changed();
+  core_.scene_rev = seen_since.value_or(core_.rev);
   core_.notify_others<protocol::notifications::scene_changed>(
       by, {.scene = core_.scene_info, .by = by});
   return {};
@@ -73,6 +76,7 @@ void SessionScene::show_first_view(std::shared_ptr<const scene::Scene> scene,
   view.camera.reset(*view.scene, core_.aspect());
   core_.first_view = std::move(view);
   core_.changed();
+  core_.first_view->scene_rev = core_.rev;
   tell_camera(by);
 }
 
@@ -88,7 +92,7 @@ void SessionScene::end_first_view() {
 /// All viewers: none has asked for it.
 void SessionScene::tell_camera(const std::string& by) {
   core_.viewers.send_all(protocol::make_notification<protocol::notifications::camera_changed>(
-                             {.camera = core_.shown_camera().message(core_.rev), .by = by}),
+                             {.camera = core_.camera_message(), .by = by}),
                          protocol::notifications::camera_changed::name);
 }
 
@@ -108,6 +112,7 @@ void SessionScene::unload(const std::string& by) {
   core_.timeline.reset_clock();
   core_.camera.clear_name();
   core_.changed();
+  core_.scene_rev = core_.rev;
   core_.notify_others<protocol::notifications::scene_unloaded>(by, message);
 }
 
@@ -192,7 +197,7 @@ protocol::EditDocument SessionScene::described_edits() const {
   describe_textures(*core_.scene, document);
   document.hidden = core_.nodes.hidden();
   document.isolated = core_.nodes.isolated();
-  if (!core_.section.get().planes.empty()) document.section = core_.section.get();
+  if (core_.section.get() != protocol::Section()) document.section = core_.section.get();
   document.environment =
       protocol::EnvironmentEdit{.name = core_.environment_name,
                                 .rotation = core_.settings.environment.rotation,

@@ -4,7 +4,6 @@ layout(local_size_x = 64) in;
 // Rays from the chosen blended surface of each pixel, where it bends or blurs what is behind: into
 // the volume that it encloses, or through the thin wall that it is. Each carries what its light is
 // multiplied by.
-#include "lib/rays/stored_rays.glsl"
 #include "lib/scene/hit_material.glsl"
 #include "lib/lighting/transmission.glsl"
 #include "lib/math/random.glsl"

@@ -3,7 +3,6 @@
 layout(local_size_x = 64) in;
 // The rays that light the chosen blended surface of each pixel, as all others are lit: toward a
 // light, into the hemisphere, along its specular lobe. Each carries what it brings.
-#include "lib/rays/stored_rays.glsl"
 #include "lib/scene/hit_material.glsl"
 #include "lib/lighting/light_choice.glsl"
 #include "lib/rays/ray_index.glsl"
@@ -69,6 +68,23 @@ Ray shadow_ray(HitSurface s, SurfaceMaterial m, float view_z, vec3 throughput, i
   return carrying(ray, pixel, throughput * sum);
 }
 
+/// Light from both sides is gathered on one of them, in proportion to what reaches the eye: turns
+/// the surface to the side that its ray leaves to, and changes what of the light there does.
+void choose_side(inout HitSurface s, inout SurfaceMaterial m, ivec2 pixel, inout vec3 around) {
+  if (gathers == 0u || !scatters_through(m)) return;
+  float behind = luminance(m.diffuse_transmitted);
+  float pick_behind = behind / max(behind + luminance(around), 1e-6);
+  float pick = random_number(uvec2(pixel), frame.sample_index, side_dimension, frame.seed);
+  if (pick >= pick_behind) {
+    around /= 1.0 - pick_behind;
+    return;
+  }
+  around = m.diffuse_transmitted / pick_behind;
+  m.normal = -m.normal;
+  m.geometric = -m.geometric;
+  s.geometric = -s.geometric;
+}
+
 /// `light` comes along it, or is what the light that it gathers is multiplied by.
 Ray ambient_ray(HitSurface s, SurfaceMaterial m, float view_z, vec3 light, ivec2 pixel,
                 out bool valid) {
@@ -114,10 +130,12 @@ void main() {
     } else if (enabled(frame_environment_specular)) {
       around += environment_specular(m);
     }
+    float roughness = specular_roughness(m);
+    choose_side(s, m, pixel, around);
     ambient = ambient_ray(s, m, view_z, throughput * around * (gathers != 0u ? 1.0 : s.occlusion),
                           pixel, open);
     imageStore(behind, pixel, vec4(seen.rgb, view_z));
-    imageStore(surface, pixel, vec4(specular_roughness(m), s.metallic, 0.0, 0.0));
+    imageStore(surface, pixel, vec4(roughness, s.metallic, 0.0, 0.0));
   }
   APPEND_RAY_TO(shadow_count, shadow_rays, lit, shadow)
   APPEND_RAY_TO(ambient_count, ambient_rays, open, ambient)

@@ -5,7 +5,6 @@ layout(local_size_x = 8, local_size_y = 8) in;
 // images that accumulate them.
 #include "lib/rays/camera_ray.glsl"
 #include "lib/rays/ray_stream.glsl"
-#include "lib/rays/stored_rays.glsl"
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D motion;
 layout(set = 1, binding = 1, std430) buffer Count { RayCount ray_count; };

@@ -4,7 +4,6 @@
 layout(local_size_x = 64) in;
 // One boundary more of the rays that a blended surface has sent into its volume: those that come
 // out are left to be shaded, others go on inside.
-#include "lib/rays/stored_rays.glsl"
 #include "lib/scene/hit_material.glsl"
 #include "lib/lighting/transmission.glsl"
 #include "lib/math/random.glsl"

@@ -6,6 +6,7 @@ layout(local_size_x = 64) in;
 // light in the radiance cache.
 #define TEXTURE_ONE_LEVEL
 #include "lib/denoise/moments.glsl"
+#include "lib/lighting/two_sided_light.glsl"
 #include "shared/radiance_cache.h"
 
 layout(set = 1, binding = 0, std430) readonly buffer Count { RayCount ray_count; };
@@ -23,6 +24,7 @@ void main() {
   Ray ray = rays[index];
   bool known;
   vec3 light = gathered_light(ray, hits[index], constants, known);
+  if (scene_has(scene_diffuse_transmits) && ray.user != 0u) light *= unpack_side_share(ray.user);
   ivec2 pixel = ivec2(ray.pixel & 0xffffu, ray.pixel >> 16u);
   imageStore(radiance, pixel,
              known ? vec4(sanitize(light) * uintBitsToFloat(ray.padding0), 1.0)

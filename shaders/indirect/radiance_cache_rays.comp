@@ -8,7 +8,6 @@ layout(local_size_x = 64) in;
 #include "lib/lighting/light_choice.glsl"
 #include "lib/math/sampling.glsl"
 #include "lib/rays/ray_stream.glsl"
-#include "lib/rays/stored_rays.glsl"
 #include "shared/emissive.h"
 #include "shared/path_guide.h"
 #include "shared/radiance_cache.h"

@@ -4,11 +4,11 @@ layout(local_size_x = 8, local_size_y = 8) in;
 // A shadow ray toward a point of an emissive triangle for every pixel that has gathered indirect
 // light, with the light that it adds.
 #include "lib/frame.glsl"
+#include "lib/lighting/two_sided_light.glsl"
 #include "lib/math/octahedral.glsl"
 #include "lib/math/random.glsl"
 #include "lib/rays/ray_stream.glsl"
 #include "lib/math/geometry.glsl"
-#include "lib/rays/stored_rays.glsl"
 #include "shared/emissive.h"
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D normals;
@@ -17,7 +17,20 @@ layout(set = 1, binding = 2, rgba32f) readonly uniform image2D radiance;
 layout(set = 1, binding = 3, std430) readonly buffer Points { EmissivePoint points[]; };
 layout(set = 1, binding = 4, std430) buffer Count { RayCount ray_count; };
 layout(set = 1, binding = 5, std430) writeonly buffer Rays { StoredRay rays[]; };
+layout(set = 1, binding = 6, rgba8) readonly uniform image2D base_color;
+layout(set = 1, binding = 7, rgba8) readonly uniform image2D surface;
+layout(set = 1, binding = 8, rgba32ui) readonly uniform uimage2D surface_layers;
 #include "lib/lighting/emissive_choice.glsl"
+#include "lib/scene/gbuffer_material.glsl"
+
+/// Factors on the light of each side.
+SideShares shares_at(ivec2 pixel) {
+  const SideShares one_side = SideShares(vec3(1.0), vec3(0.0), 0.0);
+  if (!scene_has(scene_diffuse_transmits) || imageLoad(surface, pixel).w <= 0.0) return one_side;
+  SurfaceMaterial m = material_at(pixel);
+  if (!scatters_through(m)) return one_side;
+  return side_shares(m);
+}
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
@@ -29,10 +42,12 @@ void main() {
     vec3 geometric = octahedral_decode(encoded.zw);
     vec3 position = world_position(pixel, view_z);
     vec2 u = random_pair(uvec2(pixel), frame.sample_index, 8u, frame.seed);
-    EmissiveChoice choice =
-        choose_emissive(position, octahedral_decode(encoded.xy), geometric, u.x, u.y);
+    SideShares shares = shares_at(pixel);
+    EmissiveChoice choice = choose_emissive(position, octahedral_decode(encoded.xy), geometric,
+                                            shares.near, shares.behind, u.x, u.y);
     requested = choice.total > 0.0;
-    ray.origin = offset_origin(position, geometric, view_z);
+    bool behind = shares.pick_behind > 0.0 && dot(geometric, choice.direction) < 0.0;
+    ray.origin = offset_origin(position, behind ? -geometric : geometric, view_z);
     ray.t_min = 0.0;
     ray.direction = choice.direction;
     ray.t_max = choice.distance * 0.999;

@@ -9,6 +9,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/lighting/emissive_lights.glsl"
 #include "lib/lighting/environment_sampling.glsl"
 #include "lib/lighting/transmission.glsl"
+#include "lib/rays/reference_lobes.glsl"
 #include "lib/rays/reference_path.glsl"
 #include "lib/rays/stored_rays.glsl"
 
@@ -26,8 +27,7 @@ layout(set = 1, binding = 10, std430) readonly buffer Shade { float ground_shade
 layout(push_constant) uniform Constants { ReferenceConstants constants; };
 #include "lib/lighting/ground.glsl"
 
-const uint first_roulette = 3u;       // bounce after which dim paths end at random
-const float least_roughness = 0.1;  // whose lobe is wide enough to be met by chance
+const uint first_roulette = 3u;  // bounce after which dim paths end at random
 
 /// Of light that a path meets by chance, where it is also sampled: two ways lead there, each weighed
 /// by how likely it is (Veach and Guibas 1995).
@@ -62,73 +62,9 @@ vec3 own_light_at_hit(ReferencePath path, HitSurface s, Hit hit, vec3 direction)
   return own_light(s) * mis_weight(path.density, emissive_density(hit, s, direction));
 }
 
-/// How likely scatter() takes each lobe, and the way through the surface.
-struct LobeProbabilities {
-  float specular;
-  float through;
-  float wide;
-};
-
-LobeProbabilities lobe_probabilities(SurfaceMaterial m) {
-  float specular = luminance(m.specular_albedo);
-  float through = scene_has(scene_transmits) ? luminance(m.transmitted) : 0.0;
-  float sum = max(specular + luminance(wide_albedo(m)) + through, 1e-6);
-  LobeProbabilities of;
-  of.specular = specular / sum;
-  of.through = through / sum;
-  of.wide = 1.0 - of.specular - of.through;
-  return of;
-}
-
-/// BRDF x cos of the lobes that scatter() draws by the cosine: diffuse, sheen.
-vec3 wide_light(SurfaceMaterial m, vec3 l) {
-  vec3 light = m.diffuse_albedo * (dot(m.normal, l) / pi);
-  return has_sheen(m) ? light + sheen_light(m, l) : light;
-}
-
-/// The same over that density.
-vec3 wide_weight(SurfaceMaterial m, vec3 l) {
-  if (!has_sheen(m)) return m.diffuse_albedo;
-  return m.diffuse_albedo + sheen_light(m, l) * (pi / max(dot(m.normal, l), 1e-4));
-}
-
-/// What a specular lobe sends to the eye of light along -l, BRDF x cos, and how likely
-/// sample_specular() draws it.
-struct SpecularValue {
-  vec3 reflected;
-  float density;
-};
-
-SpecularValue specular_value(SurfaceMaterial m, vec3 l, bool of_coat) {
-  LobeFrame f = lobe_frame(m, of_coat);
-  vec3 light = vec3(dot(l, f.tangent), dot(l, f.bitangent), dot(l, f.normal));
-  if (light.z <= 0.0) return SpecularValue(vec3(0.0), 0.0);
-  float density = visible_normal_pdf(f.view, light, f.alpha);
-  float v_dot_h = dot(f.view, normalize(f.view + light));
-  vec3 reflectance = of_coat ? vec3(coat_reflectance(m, v_dot_h)) : microfacet_reflectance(m, v_dot_h);
-  float drawn = has_coat(m) ? clamp(coat_share(m), 0.05, 0.95) : 0.0;
-  return SpecularValue(reflectance * (visible_normal_weight(f.view, light, f.alpha) * density),
-                       density * (of_coat ? drawn : 1.0 - drawn));
-}
-
-/// BRDF x cos over the density of `l`, which was drawn with `density` to sample a light, lobe by
-/// lobe: each with the weight that scatter() leaves to it.
-vec3 scattered_light(SurfaceMaterial m, vec3 l, float density, bool diffuse, bool specular) {
-  LobeProbabilities lobes = lobe_probabilities(m);
-  vec3 sent = vec3(0.0);
-  float cosine = dot(l, m.normal);
-  if (cosine > 0.0 && diffuse) {
-    sent += wide_light(m, l) / (density + lobes.wide * cosine / pi);
-  }
-  if (m.roughness >= least_roughness && specular) {
-    SpecularValue value = specular_value(m, l, false);
-    sent += value.reflected / (density + lobes.specular * value.density);
-  }
-  if (has_coat(m) && m.coat_roughness >= least_roughness && specular) {
-    SpecularValue value = specular_value(m, l, true);
-    sent += value.reflected / (density + lobes.specular * value.density);
-  }
-  return sent;
+/// Whether the surface gets light from direction `l`.
+bool is_lit_from(SurfaceMaterial m, vec3 l) {
+  return scatters_through(m) || dot(l, m.geometric) > 0.0;
 }
 
 /// Light of the environment from a direction drawn from its own table.
@@ -136,11 +72,11 @@ Ray sky_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pixel) {
   EnvironmentSample sky = sample_environment(path_pair(pixel, constants.round, 6u),
                                              path_pair(pixel, constants.round, 7u));
   vec3 l = sky.direction;
-  if (dot(l, m.geometric) <= 0.0) return no_ray();
+  if (!is_lit_from(m, l)) return no_ray();
   vec3 sent = scattered_light(m, l, sky.density, enabled(frame_environment_diffuse),
                               enabled(frame_environment_specular));
   if (sent == vec3(0.0)) return no_ray();
-  Ray ray = ray_from(position, m.geometric, l, 1e30);
+  Ray ray = ray_from(position, lit_side(m, l), l, 1e30);
   carry(ray, throughput * sent * environment_radiance(l));
   return ray;
 }
@@ -154,13 +90,13 @@ Ray emissive_ray(SurfaceMaterial m, vec3 position, RayCone cone, vec3 throughput
   vec3 l = light.position - position;
   float away = length(l);
   l /= max(away, 1e-20);
-  if (light.emission == vec3(0.0) || dot(l, m.geometric) <= 0.0) return no_ray();
+  if (light.emission == vec3(0.0) || !is_lit_from(m, l)) return no_ray();
   float density = density_of_direction(light.density, away, dot(light.normal, l));
   if (density <= 0.0) return no_ray();
   vec3 sent = scattered_light(m, l, density, true, true);
   if (sent == vec3(0.0)) return no_ray();
   // As far as the triangle, which must not occlude itself.
-  Ray ray = ray_from(position, m.geometric, l, away * 0.999);
+  Ray ray = ray_from(position, lit_side(m, l), l, away * 0.999);
   carry(ray, throughput * sent * light.emission);
   return ray;
 }
@@ -172,11 +108,13 @@ Ray light_shadow_ray(SurfaceMaterial m, vec3 position, vec3 throughput, ivec2 pi
   if (choice.total <= 0.0) return no_ray();
   Light light = light_number(choice.number);
   LightSample s = sample_light(light, position, path_pair(pixel, constants.round, 2u));
-  if (dot(s.ray_direction, m.geometric) <= 0.0) return no_ray();
+  vec3 side = lit_side(m, s.direction);
+  if (dot(s.ray_direction, side) <= 0.0) return no_ray();
   // Geometry may lie where an area light does and show it: it must not occlude itself.
-  Ray ray = ray_from(position, m.geometric, s.ray_direction, s.distance * 0.999);
-  vec3 light_sent = light.type >= light_rectangle ? s.irradiance * shade_light(m, s.direction)
-                                                  : light_contribution(light, m, position);
+  Ray ray = ray_from(position, side, s.ray_direction, s.distance * 0.999);
+  vec3 light_sent = light.type >= light_rectangle
+                        ? s.irradiance * shade_light_of_side(m, s.direction)
+                        : light_contribution(light, m, position);
   carry(ray, throughput * light_sent * (choice.total / choice.weight));
   if (!enabled(frame_shadows)) ray.t_max = 0.0;
   return ray;
@@ -246,6 +184,17 @@ vec3 reflect_path(inout ReferencePath path, SurfaceMaterial m, LobeProbabilities
   return direction;
 }
 
+/// Scattered to the other side.
+vec3 scatter_through(inout ReferencePath path, SurfaceMaterial m, float probability, vec2 u) {
+  vec3 direction = sample_cosine(-m.normal, u);
+  bool open = dot(direction, m.geometric) < 0.0;
+  path.throughput *= open ? m.diffuse_transmitted / max(probability, 1e-6) : vec3(0.0);
+  path.flags = (path.flags & path_kept) | path_turned;
+  path.density = probability * max(-dot(direction, m.normal), 0.0) / pi;
+  path.bounces += 1u;
+  return direction;
+}
+
 /// One of the lobes or the way through, in proportion to what it gives; false where the path ends.
 bool scatter(inout ReferencePath path, HitSurface s, SurfaceMaterial m, Boundary boundary,
              RayCone cone, float t, ivec2 pixel, out vec3 direction) {
@@ -257,9 +206,13 @@ bool scatter(inout ReferencePath path, HitSurface s, SurfaceMaterial m, Boundary
     LobeProbabilities lobes = lobe_probabilities(m);
     float pick = path_number(pixel, constants.round, 3u);
     bool specular = pick < lobes.specular;
-    if (!specular && pick < lobes.specular + lobes.through) {
+    float passing = lobes.specular + lobes.through;
+    if (!specular && pick < passing) {
       path.throughput *= m.transmitted / lobes.through;
       direction = pass_surface(path, m, boundary, u, pixel);
+    } else if (!specular && scatters_through(m) && pick < passing + lobes.behind) {
+      direction = scatter_through(path, m, lobes.behind, u);
+      roughness = 1.0;
     } else {
       direction = reflect_path(path, m, lobes, specular, u, roughness);
     }
@@ -280,6 +233,7 @@ bool scatter(inout ReferencePath path, HitSurface s, SurfaceMaterial m, Boundary
 /// diffuse lobe.
 void keep_diffuse(inout SurfaceMaterial m) {
   m.f0 = m.f90_minus_f0 = m.specular_albedo = m.sheen = m.sheen_albedo = vec3(0.0);
+  m.diffuse_transmitted = vec3(0.0);
   m.coat_albedo = 0.0;
 }
 

@@ -37,6 +37,10 @@ SHARED_CONSTANT float plan_metallic = 0.5f;
 // mean brightness of the test scenes.
 SHARED_CONSTANT float expected_albedo = 0.3f;
 
+// Of the random numbers that say to which side of a surface a gathering ray leaves that scatters
+// light through.
+SHARED_CONSTANT uint side_dimension = 60u;
+
 // Hits of reflections that lie so far from what the frame before showed, as a fraction of their
 // view Z, are not the same surface.
 SHARED_CONSTANT float shown_depth_tolerance = 0.02f;

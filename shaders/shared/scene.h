@@ -60,20 +60,24 @@ struct MaterialLayer {
   float dispersion;              // 20 / Abbe number
   vec3 attenuation;              // of light within the volume: exponents, per metre
   float refraction;              // index of refraction of the volume; 0: the surface is a thin wall
+  vec3 diffuse_tint;             // of the diffuse light that leaves at the other side
+  float diffuse_transmission;    // how much of it does
   TextureSlot specular_texture;  // a
   TextureSlot specular_color_texture;  // rgb
   TextureSlot coat_texture;            // r
   TextureSlot coat_roughness_texture;  // g
   TextureSlot coat_normal_texture;
-  TextureSlot sheen_color_texture;      // rgb
-  TextureSlot sheen_roughness_texture;  // a
-  TextureSlot transmission_texture;     // r
-  TextureSlot thickness_texture;        // g
-  TextureSlot iridescence_texture;      // r
-  TextureSlot film_texture;             // g: the film's thickness
-  TextureSlot anisotropy_texture;       // rg: direction, b: strength
+  TextureSlot sheen_color_texture;           // rgb
+  TextureSlot sheen_roughness_texture;       // a
+  TextureSlot transmission_texture;          // r
+  TextureSlot thickness_texture;             // g
+  TextureSlot iridescence_texture;           // r
+  TextureSlot film_texture;                  // g: the film's thickness
+  TextureSlot anisotropy_texture;            // rg: direction, b: strength
+  TextureSlot diffuse_transmission_texture;  // a
+  TextureSlot diffuse_tint_texture;          // rgb
 };
-SHARED_CONSTANT uint layer_textures = 12u;
+SHARED_CONSTANT uint layer_textures = 14u;
 
 // glTF 2.0 metallic-roughness material; factors are linear.
 struct Material {
@@ -146,6 +150,8 @@ SHARED_CONSTANT uint scene_layers = 16u;      // has materials with layers other
 SHARED_CONSTANT uint scene_emissive = 32u;    // has emissive triangles
 SHARED_CONSTANT uint scene_light_grid = 64u;  // has so many punctual lights (light_grid.h)
 SHARED_CONSTANT uint scene_transmits = 128u;  // has surfaces that light passes
+SHARED_CONSTANT uint scene_diffuse_transmits = 256u;  // has surfaces that scatter light to their
+                                                      // other side
 
 SHARED_CONSTANT uint light_directional = 0u;
 SHARED_CONSTANT uint light_point = 1u;

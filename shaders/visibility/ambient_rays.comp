@@ -8,7 +8,6 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/rays/ray_stream.glsl"
 #include "lib/rays/sampling_plan.glsl"
 #include "lib/math/geometry.glsl"
-#include "lib/rays/stored_rays.glsl"
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D normals;
 layout(set = 1, binding = 1, rgba32f) readonly uniform image2D motion;

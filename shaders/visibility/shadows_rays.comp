@@ -20,7 +20,6 @@ layout(set = 1, binding = 7, r32ui) readonly uniform uimage2D planned;  // or an
 layout(set = 1, binding = 8, r32f) writeonly uniform image2D visibility;
 layout(push_constant) uniform Constants { uint by_plan; };
 
-#include "lib/rays/stored_rays.glsl"
 #include "lib/scene/gbuffer_material.glsl"
 
 void main() {

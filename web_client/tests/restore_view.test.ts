@@ -29,6 +29,13 @@ const state = {
   camera,
 } as unknown as ViewState;
 
+/** Slots of materials of the server's scene. */
+const textures = [
+  { material: "floor", slot: "base_color", file_image: "planks", removed: false },
+  { material: "floor", slot: "normal", image: "bumps", removed: false },
+  { material: "wall", slot: "base_color", image: "red", removed: false },
+];
+
 type Answer = { result?: unknown; error?: { code: number; message: string; data?: object } };
 
 /** A server that has loaded a.glb after two requests and records all calls. */
@@ -54,6 +61,7 @@ function startingServer(rejections: (method: string, params: JsonObject) => Answ
       const sun = { name: "sun", intensity: 3, enabled: false, changed: ["enabled"] };
       return { result: { lights: [sun, { name: "bulb", intensity: 1, changed: [] }] } };
     }
+    if (method === "textures.list") return { result: { textures } };
     if (method === "environment.list") return { result: { environments: [], current: "dusk" } };
     if (method === "animation.list") {
       return { result: { clips: [{ name: "walk", duration: 3 }], clip: null, playing: false } };
@@ -142,6 +150,28 @@ test("settings that the server rejects are left out, the others are restored", a
   await restoreView(host, { settings: { exposure: { ev: 2, old: 7 } } });
   assert.ok(calls.includes('settings.patch {"patch":{"exposure":{"ev":2}}}'));
   assert.match(skipped.join(), /exposure\.old/);
+});
+
+test("textures are restored together, and others are the file's again", async () => {
+  const { host, calls, skipped } = startingServer((method, params) =>
+    method === "textures.set" && params.image === "gone"
+      ? { error: { code: -32004, message: "no such image", data: { path: "image" } } }
+      : null,
+  );
+  const wanted = [
+    { material: "floor", slot: "base_color", image: "moss" },
+    { material: "wall", slot: "base_color", image: "red" },
+    { material: "wall", slot: "normal", image: null },
+    { material: "door", slot: "normal", image: "gone" },
+  ];
+  assert.equal(await restoreView(host, { textures: wanted }), true);
+  assert.deepEqual(calls.filter((call) => call.startsWith("textures.")), [
+    "textures.list {}",
+    'textures.set {"material":"floor","slot":"base_color","image":"moss"}',
+    'textures.set {"material":"wall","slot":"normal","removed":true}',
+    'textures.set {"material":"floor","slot":"normal","image":null}',
+  ]);
+  assert.deepEqual(skipped, ["The server rejects the previous normal texture of door"]);
 });
 
 test("lights are restored: differences are sent, other edits are reset", async () => {

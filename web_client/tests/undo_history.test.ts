@@ -64,6 +64,34 @@ test("a movement is one step on a slow page, too, and the next one is another", 
   assert.equal(values.camera, 3, "what was redone is complete");
 });
 
+test("what was undone before a scene was seen that does not stay can be done again", () => {
+  const { values, history, change } = numbers();
+  change("sun", 5, true);
+  history.undo();
+  history.enterScene();
+  assert.deepEqual(history.next.value, { undo: null, redo: null });
+  history.leaveScene();
+  assert.deepEqual(history.next.value, { undo: null, redo: "sun" });
+  history.redo();
+  history.enterScene();
+  change("camera", 3, true);
+  change("exposure", 2);
+  history.leaveScene();
+  history.undo();
+  assert.equal(values.exposure, 0, "settings stay whatever is seen");
+  assert.equal(history.undo(), "sun");
+});
+
+test("steps in a scene that another viewer loads stay, those of the one before do not", () => {
+  const { history, change } = numbers();
+  change("sun", 5, true);
+  history.enterScene();
+  change("camera", 3, true);
+  history.dropScene();
+  assert.equal(history.undo(), "camera");
+  assert.equal(history.undo(), null);
+});
+
 test("steps in a scene are void when another viewer loads another scene", () => {
   const { values, history, change } = numbers();
   change("exposure", 1);

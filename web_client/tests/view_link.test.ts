@@ -9,6 +9,7 @@ const state: ViewState = {
   environment: null,
   lights: { sun: { direction: [0, -1, 0], enabled: false } },
   materials: { paint: { roughness: 0.3 } },
+  textures: [{ material: "paint", slot: "base_color", image: "moss" }],
   settings: { tone_map: { curve: "agx" } },
   clip: { clip: "walk", seconds: 1.5, rate: 1, playing: true },
   camera: { eye: [1, 2, 3], target: [0, 0.5, 0], up: [0, 1, 0], vertical_fov: 45, name: null },
@@ -37,10 +38,12 @@ test("invalid and too many edits are dropped", () => {
     Array.from({ length: 200 }, (_, index) => [`m${index}`, { roughness: 0.5 }]),
   );
   const wrong = { sun: "bright", bulb: { intensity: "1e9" }, moon: { direction: [0, 1, {}] } };
-  const given = { lights: wrong, materials: many } as unknown as ViewState;
+  const textures = [{ material: "paint", slot: 3, image: "moss" }];
+  const given = { lights: wrong, materials: many, textures } as unknown as ViewState;
   const seen = viewIn(linkTo("http://host/", given).href);
   assert.deepEqual(seen?.lights, {});
   assert.equal(Object.keys(seen?.materials ?? {}).length, 64);
+  assert.equal(seen?.textures, undefined);
 });
 
 test("a link has a limited length and reports what was left out", () => {

@@ -182,7 +182,7 @@ class Camera(_Group):
     def get(self) -> Dict[str, Any]:
         """Returns the camera.
 
-        Returns: eye, fitted, name, rev, target, up, vertical_fov.
+        Returns: eye, fitted, name, rev, scene_rev, target, up, vertical_fov.
         """
         return self._call("camera.get", {})
 
@@ -192,6 +192,7 @@ class Camera(_Group):
             eye: List[float] = _UNSET,
             focal_length: float = _UNSET,
             name: str = _UNSET,
+            scene_rev: int = _UNSET,
             seq: int = _UNSET,
             target: List[float] = _UNSET,
             up: List[float] = _UNSET,
@@ -203,17 +204,20 @@ class Camera(_Group):
             the setting lens.sensor_height; instead of vertical_fov. [mm]
         name: A scene camera to start from, by its name or its number from 1 on; the other
             members are applied on top.
+        scene_rev: That of the camera from which the movement began: fails where another scene
+            is shown by now. Absent: moves the camera of whichever scene is shown.
         seq: The client's sequence number; frames that show this camera echo it as
             input_seq_echo.
         target: The point at the centre of the image. [metres]
         up: The up direction of the image.
         vertical_fov: Vertical field of view. [degrees]
 
-        Returns: eye, fitted, name, rev, target, up, vertical_fov.
+        Returns: eye, fitted, name, rev, scene_rev, target, up, vertical_fov.
         """
         return self._call("camera.set", _given({
-            "eye": eye, "focal_length": focal_length, "name": name, "seq": seq,
-            "target": target, "up": up, "vertical_fov": vertical_fov}))
+            "eye": eye, "focal_length": focal_length, "name": name, "scene_rev":
+            scene_rev, "seq": seq, "target": target, "up": up, "vertical_fov":
+            vertical_fov}))
 
     def orbit(
             self,
@@ -221,6 +225,7 @@ class Camera(_Group):
             distance: float = _UNSET,
             dolly: float = _UNSET,
             pitch: float = _UNSET,
+            scene_rev: int = _UNSET,
             seq: int = _UNSET,
             yaw: float = _UNSET) -> Dict[str, Any]:
         """Rotates the camera around its target and changes its distance.
@@ -229,15 +234,16 @@ class Camera(_Group):
         dolly: Factor on the distance: below 1 moves closer.
         pitch: Positive raises the camera, negative lowers it; it stops short of the poles.
             [degrees]
+        scene_rev: That of the camera from which the movement began, as in camera.set.
         seq: The client's sequence number; frames that show this camera echo it as
             input_seq_echo.
         yaw: Rotation about the up axis, counter-clockwise seen from above. [degrees]
 
-        Returns: eye, fitted, name, rev, target, up, vertical_fov.
+        Returns: eye, fitted, name, rev, scene_rev, target, up, vertical_fov.
         """
         return self._call("camera.orbit", _given({
-            "distance": distance, "dolly": dolly, "pitch": pitch, "seq": seq, "yaw":
-            yaw}))
+            "distance": distance, "dolly": dolly, "pitch": pitch, "scene_rev":
+            scene_rev, "seq": seq, "yaw": yaw}))
 
     def fit(self, *, nodes: List[int] = _UNSET) -> Dict[str, Any]:
         """Moves the camera so that the whole scene or some of its nodes fill the view.
@@ -245,7 +251,7 @@ class Camera(_Group):
         nodes: Ids from nodes.list, which are shown with all below them; absent: the whole
             scene.
 
-        Returns: eye, fitted, name, rev, target, up, vertical_fov.
+        Returns: eye, fitted, name, rev, scene_rev, target, up, vertical_fov.
         """
         return self._call("camera.fit", _given({"nodes": nodes}))
 

@@ -17,7 +17,6 @@
 #include "net/tcp_progress.hpp"
 #include "net/websocket/upgrade_refusal.hpp"
 #include "protocol/messages/messages.hpp"
-#include "session/event_log.hpp"
 
 namespace heliograph::net {
 namespace {
@@ -41,7 +40,6 @@ std::optional<std::string> mjpeg_stream_session(const HttpRequest& request) {
   return std::string(path.substr(before.size(), path.size() - around));
 }
 
-constexpr std::chrono::minutes max_upload_duration{10};
 constexpr std::size_t discarded_at_once = 16 * 1024;
 constexpr std::size_t head_bytes_at_once = 4 * 1024;
 // How often it is checked whether the client of an answer that is being made is still there.
@@ -185,51 +183,11 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     answering_ = true;
     const HttpRequest request = to_request(BeastRequest(parser_->get()), stream_);
     framing_.cors = context_.access.cors_headers(request);
-    std::optional<std::uint64_t> size;
-    if (const auto told = parser_->content_length()) size = *told;
-    if (auto refused = upload_refusal(context_, request, size)) return send(*std::move(refused));
-    const UploadAddress address = *upload_address(request.path);
-    auto begun = context_.uploads->begin(address.kind, std::string(address.name), *size);
-    if (!begun) return send(error_response(begun.error()));
-    upload_ = *begun;
-    upload_parser_.emplace(std::move(*parser_));
-    error_code error;
-    upload_parser_->get().body().open(upload_->path().c_str(), beast::file_mode::write, error);
-    if (error) {
-      upload_.reset();
-      return send(error_response(protocol::error::internal()));
-    }
-    upload_deadline_ = std::chrono::steady_clock::now() + max_upload_duration;
-    send_continue(upload_parser_->get(), [self = shared_from_this()] { self->receive_upload(); });
-  }
-
-  void receive_upload() {
-    stream_.next_layer().expires_after(handshake_timeout);
-    http::async_read_some(
-        stream_, buffer_, *upload_parser_,
-        IoHandler([self = shared_from_this()](error_code error) { self->received_upload(error); }));
-  }
-
-  void received_upload(error_code error) {
-    const bool late = std::chrono::steady_clock::now() > upload_deadline_;
-    if (is_of_disk(error)) {
-      session::log_error({}, "an upload could not be written: " + error.message());
-      upload_.reset();
-      return send(error_response(protocol::error::full("the server's disk is full or has failed")));
-    }
-    if (error || late) return upload_.reset();
-    if (!upload_parser_->is_done()) return receive_upload();
-    upload_parser_->get().body().close();
-    stream_.next_layer().expires_never();
-    context_.uploads->finish(
-        std::exchange(upload_, nullptr),
-        [self = shared_from_this()](const protocol::Result<session::UploadedFile>& accepted) {
-          HttpResponse response =
-              accepted ? upload_response(*accepted) : error_response(accepted.error());
-          run_later(self->stream_.get_executor(), [self, response = std::move(response)]() mutable {
-            self->send(std::move(response));
-          });
-        });
+    if (auto refused = upload_.begin(request, *parser_)) return send(*std::move(refused));
+    send_continue(upload_.head(), [self = shared_from_this()] {
+      self->upload_.receive(self->stream_, self->buffer_,
+                            [self](HttpResponse response) { self->send(std::move(response)); });
+    });
   }
 
   void received(error_code error) {
@@ -400,9 +358,7 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
   std::optional<http::request_parser<http::string_body>> parser_;
   std::optional<BeastRequest::header_type> headers_before_body_;  // where trailers may follow
   ChunkExaminer examine_chunk_;  // the parser keeps a reference to it
-  std::shared_ptr<session::UploadStore::Incoming> upload_;
-  std::optional<http::request_parser<http::file_body>> upload_parser_;
-  std::chrono::steady_clock::time_point upload_deadline_;
+  UploadReceiver upload_{context_};
   asio::steady_timer presence_timer_;  // runs while an answer is being made
   Framing framing_;
   ResponseWriter writer_{context_};

@@ -1,11 +1,23 @@
 #include "net/http/upload_requests.hpp"
 
+#include <boost/beast/http/read.hpp>
 #include <cerrno>
+#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-namespace heliograph::net {
+#include "net/io_handler.hpp"
+#include "session/event_log.hpp"
 
+namespace heliograph::net {
+namespace {
+
+namespace http = beast::http;
+using boost::system::error_code;
+
+constexpr std::chrono::minutes max_upload_duration{10};
+
+/// `length`: of the body, bytes, where the request tells it.
 std::optional<HttpResponse> upload_refusal(const ServerContext& context, const HttpRequest& request,
                                            std::optional<std::uint64_t> length) {
   if (context.certificate && !request.secure) return text_response(400, "Use HTTPS.");
@@ -26,6 +38,7 @@ std::optional<HttpResponse> upload_refusal(const ServerContext& context, const H
   return context.router.name_conflict(*address);
 }
 
+/// 201 Created, with what the file has.
 HttpResponse upload_response(const session::UploadedFile& file) {
   nlohmann::json described{{"name", file.name}, {"bytes", file.bytes}};
   if (file.kind == session::UploadKind::scene) {
@@ -39,10 +52,70 @@ HttpResponse upload_response(const session::UploadedFile& file) {
   return response;
 }
 
-bool is_of_disk(boost::system::error_code error) {
+/// Of the file that an upload is written to; all other errors are the connection's.
+bool is_of_disk(error_code error) {
   return error == boost::system::errc::no_space_on_device ||
          error == boost::system::errc::io_error ||
-         error == boost::system::error_code(EDQUOT, asio::error::get_system_category());
+         error == error_code(EDQUOT, asio::error::get_system_category());
+}
+
+}  // namespace
+
+std::optional<HttpResponse> UploadReceiver::begin(const HttpRequest& request,
+                                                  http::request_parser<http::string_body>& parser) {
+  std::optional<std::uint64_t> size;
+  if (const auto told = parser.content_length()) size = *told;
+  if (auto refused = upload_refusal(context_, request, size)) return refused;
+  const UploadAddress address = *upload_address(request.path);
+  auto begun = context_.uploads->begin(address.kind, std::string(address.name), *size);
+  if (!begun) return error_response(begun.error());
+  incoming_ = *begun;
+  parser_.emplace(std::move(parser));
+  error_code error;
+  parser_->get().body().open(incoming_->path().c_str(), beast::file_mode::write, error);
+  if (error) {
+    incoming_.reset();
+    return error_response(protocol::error::internal());
+  }
+  deadline_ = std::chrono::steady_clock::now() + max_upload_duration;
+  return std::nullopt;
+}
+
+void UploadReceiver::receive(ClientStream& stream, beast::flat_buffer& buffer, Answer answer) {
+  stream.next_layer().expires_after(handshake_timeout);
+  http::async_read_some(
+      stream, buffer, *parser_,
+      IoHandler([this, &stream, &buffer, answer = std::move(answer)](error_code error) mutable {
+        received(error, stream, buffer, std::move(answer));
+      }));
+}
+
+void UploadReceiver::received(error_code error, ClientStream& stream, beast::flat_buffer& buffer,
+                              Answer answer) {
+  const bool late = std::chrono::steady_clock::now() > deadline_;
+  if (is_of_disk(error)) {
+    session::log_error({}, "an upload could not be written: " + error.message());
+    incoming_.reset();
+    return answer(error_response(protocol::error::full("the server's disk is full or has failed")));
+  }
+  if (error || late) return incoming_.reset();
+  if (!parser_->is_done()) return receive(stream, buffer, std::move(answer));
+  parser_->get().body().close();
+  stream.next_layer().expires_never();
+  check(stream, std::move(answer));
+}
+
+void UploadReceiver::check(ClientStream& stream, Answer answer) {
+  context_.uploads->finish(
+      std::exchange(incoming_, nullptr),
+      [executor = stream.get_executor(),
+       answer = std::move(answer)](const protocol::Result<session::UploadedFile>& accepted) {
+        HttpResponse response =
+            accepted ? upload_response(*accepted) : error_response(accepted.error());
+        run_later(executor, [answer, response = std::move(response)]() mutable {
+          answer(std::move(response));
+        });
+      });
 }
 
 }  // namespace heliograph::net

@@ -1,9 +1,15 @@
 #pragma once
 
-#include <boost/system/error_code.hpp>
-#include <cstdint>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/http/file_body.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <chrono>
+#include <functional>
+#include <memory>
 #include <optional>
 
+#include "net/client_stream.hpp"
 #include "net/connection.hpp"
 #include "net/http/http_message.hpp"
 
@@ -11,15 +17,33 @@
 
 namespace heliograph::net {
 
-/// Why a body is not received: the client may not upload, or the address or the length is wrong.
-/// `length`: of the body, bytes, where the request tells it.
-std::optional<HttpResponse> upload_refusal(const ServerContext& context, const HttpRequest& request,
-                                           std::optional<std::uint64_t> length);
+/// Receives the body of an upload into its file, and has it checked: a part of its connection.
+class UploadReceiver {
+ public:
+  using Parser = beast::http::request_parser<beast::http::file_body>;
+  using Answer = std::function<void(HttpResponse)>;
 
-/// 201 Created, with what the file has.
-HttpResponse upload_response(const session::UploadedFile& file);
+  explicit UploadReceiver(ServerContext& context) : context_(context) {}
 
-/// Of the file that an upload is written to; all other errors are the connection's.
-bool is_of_disk(boost::system::error_code error);
+  /// Takes over the parser of a request, of which the head is known, if its body may be received.
+  /// @return why it is not: the client may not upload, or the address or the length is wrong
+  std::optional<HttpResponse> begin(const HttpRequest& request,
+                                    beast::http::request_parser<beast::http::string_body>& parser);
+  const Parser::value_type& head() const { return parser_->get(); }
+  /// Receives the body, and calls `answer` on the network thread when the file was checked. Where
+  /// the client goes before, or is too slow, it is not called. It keeps the connection, of which
+  /// `stream` and `buffer` are parts.
+  void receive(ClientStream& stream, beast::flat_buffer& buffer, Answer answer);
+
+ private:
+  void received(boost::system::error_code error, ClientStream& stream, beast::flat_buffer& buffer,
+                Answer answer);
+  void check(ClientStream& stream, Answer answer);
+
+  ServerContext& context_;
+  std::shared_ptr<session::UploadStore::Incoming> incoming_;
+  std::optional<Parser> parser_;
+  std::chrono::steady_clock::time_point deadline_;
+};
 
 }  // namespace heliograph::net

@@ -137,7 +137,8 @@ class Composition {
     const Triple<V> geometric = octahedral_decode(encoded.z, encoded.w);
     if constexpr (layered) {
       V roughness;
-      const SurfaceLayer<V> layer = unpack_layer(d_, load(job_.layers, x, y), normal, roughness);
+      const SurfaceLayer<V> layer =
+          unpack_layer(d_, load(job_.layers, x, y), normal, packed.w, roughness);
       return make_material(d_, base_color, packed.y, roughness, normal, geometric, view.to_eye(x),
                            tables_, layer);
     } else {
@@ -157,9 +158,9 @@ class Composition {
 
   HWY_INLINE void add_lit(M lit, const Material& m, V occlusion, Terms& terms) const {
     if (enabled(shared::frame_indirect)) {
-      terms.indirect = select(lit, wide_albedo(m), terms.indirect);
+      terms.indirect = select(lit, spread_albedo(m), terms.indirect);
     } else if (enabled(shared::frame_environment_diffuse)) {
-      terms.ambient = select(lit, wide_albedo(m) * irradiance(m.normal) * occlusion, terms.ambient);
+      terms.ambient = select(lit, open_diffuse(m) * occlusion, terms.ambient);
     }
     // Roughness is stored in steps of 1 / 255: a little more than half of one is still the same.
     const M traced = hn::And(
@@ -172,9 +173,26 @@ class Composition {
                                       HWY_ATTR { return reflection(normal, m.eye, roughness); });
       terms.ambient = select(looked_up, terms.ambient + light * occlusion, terms.ambient);
       if (enabled(shared::frame_indirect)) {
-        terms.sky = hn::IfThenElseZero(looked_up, luminance(irradiance(m.normal)));
+        terms.sky = hn::IfThenElseZero(looked_up, luminance(open_indirect(m)));
       }
     }
+  }
+
+  HWY_INLINE Triple<V> open_diffuse(const Material& m) const {
+    return environment_diffuse(
+        m, [&](const Triple<V>& normal) HWY_ATTR { return irradiance(normal); });
+  }
+
+  /// What the indirect signal is where nothing hides the environment.
+  HWY_INLINE Triple<V> open_indirect(const Material& m) const {
+    const Triple<V> one_side = irradiance(m.normal);
+    if (!scatters_through(m)) return one_side;
+    const Triple<V> light = open_diffuse(m), albedo = spread_albedo(m);
+    const V least = set(1e-6f);
+    const Triple<V> both{light.x / hn::Max(albedo.x, least), light.y / hn::Max(albedo.y, least),
+                         light.z / hn::Max(albedo.z, least)};
+    const M through = hn::Gt(largest_of(transmitted_albedo(m)), hn::Zero(d_));
+    return select(through, both, one_side);
   }
 
   /// environment_reflection() of shaders/lib/lighting/environment.glsl

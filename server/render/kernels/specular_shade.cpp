@@ -112,23 +112,37 @@ class HitShading {
                                    Integer order, Mask& lit) {
     const bool diffuse = enabled(shared::frame_environment_diffuse);
     const Float3 open = diffuse ? environment_.irradiance(m.normal) : numbers(0.0f);
-    const CachedLanes cached = cached_light(*cache_, s, t, order, lit, touches_);
+    const CachedLanes cached = cached_light(*cache_, s, s.geometric, t, order, lit, touches_);
     const Float3 irradiance =
         select(cached.known, cached.indirect, open * number(shared::unknown_openness));
-    const Float3 light = reflected_light(m, irradiance, open, environment_, frame_.flags);
+    Float3 light = reflected_light(m, irradiance, open, environment_, frame_.flags);
+    Float3 direct = (wide_albedo(m) + m.specular_albedo) * cached.direct;
+    Mask known = cached.known;
+    const Mask through = hn::And(lit, hn::Gt(largest_of(transmitted_albedo(m)), zero()));
+    if (scatters_through(m) && !none(through)) {
+      const CachedLanes behind =
+          cached_light(*cache_, s, -s.geometric, t, order, through, touches_);
+      const Float3 sky = diffuse ? environment_.irradiance(-m.normal) : numbers(0.0f);
+      const Float3 arriving =
+          select(behind.known, behind.indirect, sky * number(shared::unknown_openness));
+      light = light + keep(through, transmitted_albedo(m) * arriving);
+      direct = direct + keep(through, transmitted_albedo(m) * behind.direct);
+      known = hn::AndNot(hn::AndNot(behind.known, through), known);
+    }
     if (!job_.constants.cached_lights) return light;
     // A mirror would show the cell.
     const Float lobe = roughness * roughness * t * number(shared::cell_in_lobe);
-    const Mask by_cell = hn::And(cached.known, hn::Lt(cached.size, lobe));
+    const Mask by_cell = hn::And(known, hn::Lt(cached.size, lobe));
     lit = hn::AndNot(by_cell, lit);
-    return light + keep(by_cell, (wide_albedo(m) + m.specular_albedo) * cached.direct);
+    return light + keep(by_cell, direct);
   }
 
   /// The environment's light as if nothing hid it.
   HWY_INLINE Float3 open_light(const Material& m) const {
     Float3 light = numbers(0.0f);
     if (enabled(shared::frame_environment_diffuse)) {
-      light = wide_albedo(m) * environment_.irradiance(m.normal);
+      light = environment_diffuse(
+          m, [&](const Float3& normal) HWY_ATTR { return environment_.irradiance(normal); });
     }
     if (enabled(shared::frame_environment_specular)) {
       const auto reflection = [&](const Float3& normal, Float roughness) HWY_ATTR {
@@ -193,7 +207,7 @@ class HitShading {
     RayLanes shadow;
     const Mask seen =
         aim(job_.lights.all, job_.lights.outside, chosen, m, position, u, pick, valid, shadow);
-    shadow.origin = offset_origin(position, m.geometric, zero());
+    shadow.origin = offset_origin(position, lit_side(m, shadow.direction), zero());
     shadow.t_min = zero();
     // Without shadows every light is visible: an empty interval hits nothing.
     if (!enabled(shared::frame_shadows)) shadow.t_max = zero();

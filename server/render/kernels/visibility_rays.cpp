@@ -92,7 +92,7 @@ class ShadowRays : public VisibilityRays<ShadowRays<layered>, ShadowRaysJob> {
     points_.at(x, y, u.x, u.y);
     requested =
         aim(job_.lights.all, job_.lights.outside, light, m, position, u, pick, requested, ray);
-    ray.origin = offset_origin(position, m.geometric, view_z);
+    ray.origin = offset_origin(position, lit_side(m, ray.direction), view_z);
   }
 
  private:

@@ -11,7 +11,7 @@ namespace heliograph::render::kernels {
 namespace {
 
 static_assert(sizeof(Slot) == 16 * 4 && sizeof(Material) == (16 + 5 * 16) * 4 &&
-              sizeof(Layer) == (32 + 12 * 16) * 4);
+              sizeof(Layer) == (36 + 14 * 16) * 4);
 
 bool same_texels(const shared::TextureSlot& a, const shared::TextureSlot& b) {
   return a.texture == b.texture && a.uv_set == b.uv_set &&
@@ -118,6 +118,8 @@ Layer make_layer(const shared::MaterialLayer& from, const SlotMaker& slots) {
   to.dispersion = from.dispersion;
   to.attenuation = from.attenuation;
   to.refraction = from.refraction;
+  to.diffuse_tint = from.diffuse_tint;
+  to.diffuse_transmission = from.diffuse_transmission;
   to.coat_slot = slots.make(from.coat_texture, to.uses);
   to.coat_roughness_slot = slots.make(from.coat_roughness_texture, to.uses);
   to.coat_normal_slot = slots.make(from.coat_normal_texture, to.uses);
@@ -130,10 +132,13 @@ Layer make_layer(const shared::MaterialLayer& from, const SlotMaker& slots) {
   to.iridescence_slot = slots.make(from.iridescence_texture, to.uses);
   to.film_slot = slots.make(from.film_texture, to.uses);
   to.anisotropy_slot = slots.make(from.anisotropy_texture, to.uses);
-  share_place(to.coat_slot, {&to.coat_roughness_slot, &to.coat_normal_slot, &to.specular_slot,
-                             &to.specular_color_slot, &to.sheen_color_slot,
-                             &to.sheen_roughness_slot, &to.transmission_slot, &to.thickness_slot,
-                             &to.iridescence_slot, &to.film_slot, &to.anisotropy_slot});
+  to.diffuse_transmission_slot = slots.make(from.diffuse_transmission_texture, to.uses);
+  to.diffuse_tint_slot = slots.make(from.diffuse_tint_texture, to.uses);
+  share_place(to.coat_slot,
+              {&to.coat_roughness_slot, &to.coat_normal_slot, &to.specular_slot,
+               &to.specular_color_slot, &to.sheen_color_slot, &to.sheen_roughness_slot,
+               &to.transmission_slot, &to.thickness_slot, &to.iridescence_slot, &to.film_slot,
+               &to.anisotropy_slot, &to.diffuse_transmission_slot, &to.diffuse_tint_slot});
   return to;
 }
 

@@ -87,6 +87,8 @@ struct Layer {
   float dispersion;
   glm::vec3 attenuation;
   float refraction;
+  glm::vec3 diffuse_tint;
+  float diffuse_transmission;
   std::uint32_t uses;  // uses_*
   std::array<std::uint32_t, 3> padding;
   Slot coat_slot;  // whose place the others may share
@@ -101,6 +103,8 @@ struct Layer {
   Slot iridescence_slot;
   Slot film_slot;
   Slot anisotropy_slot;
+  Slot diffuse_transmission_slot;
+  Slot diffuse_tint_slot;
 };
 
 /// What surfaces are made of.

@@ -39,10 +39,20 @@ std::array<const shared::TextureSlot*, material_textures> slots_of(const shared:
 
 std::array<const shared::TextureSlot*, shared::layer_textures> slots_of(
     const shared::MaterialLayer& l) {
-  return {&l.specular_texture,        &l.specular_color_texture, &l.coat_texture,
-          &l.coat_roughness_texture,  &l.coat_normal_texture,    &l.sheen_color_texture,
-          &l.sheen_roughness_texture, &l.transmission_texture,   &l.thickness_texture,
-          &l.iridescence_texture,     &l.film_texture,           &l.anisotropy_texture};
+  return {&l.specular_texture,
+          &l.specular_color_texture,
+          &l.coat_texture,
+          &l.coat_roughness_texture,
+          &l.coat_normal_texture,
+          &l.sheen_color_texture,
+          &l.sheen_roughness_texture,
+          &l.transmission_texture,
+          &l.thickness_texture,
+          &l.iridescence_texture,
+          &l.film_texture,
+          &l.anisotropy_texture,
+          &l.diffuse_transmission_texture,
+          &l.diffuse_tint_texture};
 }
 
 /// Of all slots of every material, with those of its layer where it has one.

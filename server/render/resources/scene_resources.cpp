@@ -150,14 +150,13 @@ SceneResources::SceneResources(const gpu::Device& device, const Programs& progra
       white_(constant_texture(device, "white", {255, 255, 255, 255})),
       flat_normal_(constant_texture(device, "flat normal", {128, 128, 255, 255})) {
   progress("tables", 0.1f);
-  upload_tables(device, host_kernels, first);
+  upload_tables(device, host_kernels, first.get());
   make_samplers();
   // Beside the textures, which one thread copies.
   std::stop_source stop;
+  const bool shared = first && tracing::cover_alike(first->scene->materials, scene->materials);
   auto structure = std::async(std::launch::async, [&] {
-    const bool shared = first && tracing::cover_alike(first->scene->materials, scene->materials);
-    if (shared) return first->rest_structure;
-    return build_structure(tracer, *scene, rest_tables, stop.get_token());
+    return shared ? nullptr : build_structure(tracer, *scene, rest_tables, stop.get_token());
   });
   // Destroyed before the future, which waits for its thread.
   const StopAtEnd stops_with_this{stop};
@@ -173,13 +172,29 @@ SceneResources::SceneResources(const gpu::Device& device, const Programs& progra
     progress("acceleration structure", 0.5f);
   } while (structure.wait_for(progress_interval) != std::future_status::ready);
   rest_structure = structure.get();
+  if (shared) share_structure(first);
+}
+
+/// The structure refers to masks of `first`, which stays as long as it does.
+void SceneResources::share_structure(const std::shared_ptr<const SceneResources>& first) {
+  rest_structure = {first, first->rest_structure.get()};
+  first_bytes_ = first->bytes_of_its_own();
 }
 
 std::uint64_t SceneResources::bytes() const {
-  std::uint64_t sum = rest_structure->bytes() + emission_means.bytes();
+  std::uint64_t sum = rest_structure->bytes() + first_bytes_ + bytes_of_its_own();
   for (const gpu::Buffer* buffer :
-       {&rest_tables.vertices, &rest_tables.indices, &rest_tables.meshes, &rest_tables.instances,
-        &rest_tables.materials, &rest_tables.lights, &rest_tables.alpha_heap, &texture_heap.texels,
+       {&geometry_->vertices, &geometry_->indices, &geometry_->meshes, &geometry_->instances}) {
+    sum += buffer->size();
+  }
+  return sum;
+}
+
+/// Without what a scene and its first view share.
+std::uint64_t SceneResources::bytes_of_its_own() const {
+  std::uint64_t sum = emission_means.bytes();
+  for (const gpu::Buffer* buffer :
+       {&rest_tables.materials, &rest_tables.lights, &rest_tables.alpha_heap, &texture_heap.texels,
         &texture_heap.textures, &layers, &emissive.table, &emissive.first}) {
     sum += buffer->size();
   }
@@ -193,7 +208,7 @@ std::uint64_t SceneResources::bytes() const {
 }
 
 void SceneResources::upload_tables(const gpu::Device& device, bool host_kernels,
-                                   const std::shared_ptr<const SceneResources>& first) {
+                                   const SceneResources* first) {
   const std::uint64_t vertex_bytes = bytes_of_meshes(scene->meshes, &scene::Mesh::vertices);
   const std::uint64_t index_bytes = bytes_of_meshes(scene->meshes, &scene::Mesh::indices);
   for_kernels_only = device.is_cpu() && host_kernels &&
@@ -216,7 +231,8 @@ void SceneResources::upload_tables(const gpu::Device& device, bool host_kernels,
   std::vector<shared::Light> lights;
   for (const scene::Light& light : scene->lights) lights.push_back(light.device);
 
-  first ? share_geometry(first) : upload_geometry(device);
+  geometry_ = first ? first->geometry_ : upload_geometry(device);
+  bind_geometry();
   rest_tables.materials = upload(device, "materials", scene->materials);
   const auto& materials = scene->materials;
   const bool blends =
@@ -228,7 +244,8 @@ void SceneResources::upload_tables(const gpu::Device& device, bool host_kernels,
   features = light_features(lights) | (scene->deformations.empty() ? 0u : shared::scene_deforms) |
              (blends ? shared::scene_blends : 0u) |
              (scene->layers.size() > 1 ? shared::scene_layers : 0u) |
-             (transmits ? shared::scene_transmits : 0u);
+             (transmits ? shared::scene_transmits : 0u) |
+             (scene::scatters_through(scene->layers) ? shared::scene_diffuse_transmits : 0u);
   layers = upload(device, "material layers",
                   scene->layers.empty() ? std::vector{scene::plain_layer()} : scene->layers);
   rest_tables.lights = make_light_table(device, lights);
@@ -237,23 +254,26 @@ void SceneResources::upload_tables(const gpu::Device& device, bool host_kernels,
       upload(device, "alpha masks", scene->alpha_heap, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
 }
 
-void SceneResources::upload_geometry(const gpu::Device& device) {
-  rest_tables.vertices = upload_of_meshes(device, "vertices", scene->meshes, &scene::Mesh::vertices,
-                                          VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
-  rest_tables.indices = upload_of_meshes(device, "indices", scene->meshes, &scene::Mesh::indices,
-                                         VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
-  rest_tables.meshes = upload(device, "meshes", meshes_);
-  rest_tables.instances = upload(device, "instances", instances_);
+std::shared_ptr<const SceneResources::Geometry> SceneResources::upload_geometry(
+    const gpu::Device& device) const {
+  auto made = std::make_shared<Geometry>();
+  made->vertices = upload_of_meshes(device, "vertices", scene->meshes, &scene::Mesh::vertices,
+                                    VK_BUFFER_USAGE_VERTEX_BUFFER_BIT);
+  made->indices = upload_of_meshes(device, "indices", scene->meshes, &scene::Mesh::indices,
+                                   VK_BUFFER_USAGE_INDEX_BUFFER_BIT);
+  made->meshes = upload(device, "meshes", meshes_);
+  made->instances = upload(device, "instances", instances_);
+  return made;
 }
 
-void SceneResources::share_geometry(const std::shared_ptr<const SceneResources>& first) {
-  using Tables = tracing::SceneBuffers;
-  for (gpu::Buffer Tables::*const table :
-       {&Tables::vertices, &Tables::indices, &Tables::meshes, &Tables::instances}) {
-    // `first` stays, and with it what its structure refers to.
-    const std::shared_ptr<const gpu::Buffer> shared(first, &(first->rest_tables.*table));
-    rest_tables.*table = gpu::Buffer(shared);
-  }
+void SceneResources::bind_geometry() {
+  const auto bind = [this](const gpu::Buffer& buffer) {
+    return gpu::Buffer(std::shared_ptr<const gpu::Buffer>(geometry_, &buffer));
+  };
+  rest_tables.vertices = bind(geometry_->vertices);
+  rest_tables.indices = bind(geometry_->indices);
+  rest_tables.meshes = bind(geometry_->meshes);
+  rest_tables.instances = bind(geometry_->instances);
 }
 
 void SceneResources::upload_textures(const UploadProgress& progress, const ImageDone& image_done) {

@@ -45,7 +45,8 @@ class SceneResources {
  public:
   /// `host_kernels`: whether passes that have one run theirs, so that no shader reads the scene.
   /// `first`: of the same scene without its textures, on the same device: its tables of geometry
-  /// are shared, as is its acceleration structure where rays meet the same. Null: there is none.
+  /// are shared, as is its acceleration structure where rays meet the same; nothing else of it
+  /// stays otherwise. Null: there is none.
   SceneResources(const gpu::Device& device, const Programs& programs, bool host_kernels,
                  std::shared_ptr<const scene::Scene> scene,
                  std::shared_ptr<const LitEnvironment> environment,
@@ -53,7 +54,7 @@ class SceneResources {
                  const ImageDone& image_done,
                  const std::shared_ptr<const SceneResources>& first = nullptr);
 
-  /// Memory of tables, images and the acceleration structure.
+  /// Memory of tables, images and the acceleration structure, with all that is shared.
   std::uint64_t bytes() const;
 
   std::shared_ptr<const scene::Scene> scene;
@@ -82,10 +83,19 @@ class SceneResources {
   kernels::MaterialTable make_host_materials(const MaterialTables& tables) const;
 
  private:
-  void upload_tables(const gpu::Device& device, bool host_kernels,
-                     const std::shared_ptr<const SceneResources>& first);
-  void upload_geometry(const gpu::Device& device);
-  void share_geometry(const std::shared_ptr<const SceneResources>& first);
+  /// Tables that a scene has in common with its first view.
+  struct Geometry {
+    gpu::Buffer vertices;
+    gpu::Buffer indices;
+    gpu::Buffer meshes;
+    gpu::Buffer instances;
+  };
+
+  void upload_tables(const gpu::Device& device, bool host_kernels, const SceneResources* first);
+  std::shared_ptr<const Geometry> upload_geometry(const gpu::Device& device) const;
+  void bind_geometry();
+  void share_structure(const std::shared_ptr<const SceneResources>& first);
+  std::uint64_t bytes_of_its_own() const;
   void upload_textures(const UploadProgress& progress, const ImageDone& image_done);
   void upload_emissive_triangles();
   void make_samplers();
@@ -98,6 +108,8 @@ class SceneResources {
 
   const gpu::Device& device_;
   const Programs& programs_;
+  std::shared_ptr<const Geometry> geometry_;
+  std::uint64_t first_bytes_ = 0;  // of a first view that stays with the structure
   std::vector<shared::Mesh> meshes_;
   std::vector<shared::Instance> instances_;
   mutable std::mutex sampled_mutex_;        // guards the two below

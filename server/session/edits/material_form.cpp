@@ -52,6 +52,9 @@ void visit_extension_factors(const auto& visit) {
         &Patch::iridescence_thickness_maximum);
   visit("anisotropy", &Info::anisotropy, &Patch::anisotropy);
   visit("anisotropy_rotation", &Info::anisotropy_rotation, &Patch::anisotropy_rotation);
+  visit("diffuse_transmission", &Info::diffuse_transmission, &Patch::diffuse_transmission);
+  visit("diffuse_transmission_color", &Info::diffuse_transmission_color,
+        &Patch::diffuse_transmission_color);
   visit("transmission", &Info::transmission, &Patch::transmission);
   visit("thickness", &Info::thickness, &Patch::thickness);
   visit("attenuation_distance", &Info::attenuation_distance, &Patch::attenuation_distance);
@@ -87,6 +90,8 @@ void describe_extensions(const FileMaterial& material, MaterialInfo& info) {
   info.iridescence_thickness_maximum = from.iridescence_thickness_maximum;
   info.anisotropy = from.anisotropy;
   info.anisotropy_rotation = from.anisotropy_rotation;
+  info.diffuse_transmission = from.diffuse_transmission;
+  info.diffuse_transmission_color = to_protocol(from.diffuse_transmission_color);
   if (!transmits(material)) return;
   info.transmission = from.transmission;
   info.thickness = from.thickness;
@@ -98,23 +103,26 @@ void describe_extensions(const FileMaterial& material, MaterialInfo& info) {
 void name_textures(const FileMaterial& material, MaterialInfo& info) {
   const shared::Material& base = material.device;
   const scene::MaterialLayers& more = material.extensions;
-  const std::array slots{std::pair{"base_color", &base.base_color_texture},
-                         std::pair{"metallic_roughness", &base.metallic_roughness_texture},
-                         std::pair{"normal", &base.normal_texture},
-                         std::pair{"occlusion", &base.occlusion_texture},
-                         std::pair{"emissive", &base.emissive_texture},
-                         std::pair{"specular", &more.specular_texture},
-                         std::pair{"specular_color", &more.specular_color_texture},
-                         std::pair{"clearcoat", &more.clearcoat_texture},
-                         std::pair{"clearcoat_roughness", &more.clearcoat_roughness_texture},
-                         std::pair{"clearcoat_normal", &more.clearcoat_normal_texture},
-                         std::pair{"sheen_color", &more.sheen_color_texture},
-                         std::pair{"sheen_roughness", &more.sheen_roughness_texture},
-                         std::pair{"transmission", &more.transmission_texture},
-                         std::pair{"thickness", &more.thickness_texture},
-                         std::pair{"iridescence", &more.iridescence_texture},
-                         std::pair{"iridescence_thickness", &more.iridescence_thickness_texture},
-                         std::pair{"anisotropy", &more.anisotropy_texture}};
+  const std::array slots{
+      std::pair{"base_color", &base.base_color_texture},
+      std::pair{"metallic_roughness", &base.metallic_roughness_texture},
+      std::pair{"normal", &base.normal_texture},
+      std::pair{"occlusion", &base.occlusion_texture},
+      std::pair{"emissive", &base.emissive_texture},
+      std::pair{"specular", &more.specular_texture},
+      std::pair{"specular_color", &more.specular_color_texture},
+      std::pair{"clearcoat", &more.clearcoat_texture},
+      std::pair{"clearcoat_roughness", &more.clearcoat_roughness_texture},
+      std::pair{"clearcoat_normal", &more.clearcoat_normal_texture},
+      std::pair{"sheen_color", &more.sheen_color_texture},
+      std::pair{"sheen_roughness", &more.sheen_roughness_texture},
+      std::pair{"transmission", &more.transmission_texture},
+      std::pair{"thickness", &more.thickness_texture},
+      std::pair{"iridescence", &more.iridescence_texture},
+      std::pair{"iridescence_thickness", &more.iridescence_thickness_texture},
+      std::pair{"anisotropy", &more.anisotropy_texture},
+      std::pair{"diffuse_transmission", &more.diffuse_transmission_texture},
+      std::pair{"diffuse_transmission_color", &more.diffuse_transmission_color_texture}};
   for (const auto& [name, slot] : slots) {
     if (slot->texture != shared::no_texture) info.textures.emplace_back(name);
   }
@@ -180,6 +188,8 @@ scene::MaterialLayers extensions_form(const MaterialInfo& info, scene::MaterialL
   number(info.iridescence_thickness_maximum, layers.iridescence_thickness_maximum);
   number(info.anisotropy, layers.anisotropy);
   number(info.anisotropy_rotation, layers.anisotropy_rotation);
+  number(info.diffuse_transmission, layers.diffuse_transmission);
+  color(info.diffuse_transmission_color, layers.diffuse_transmission_color);
   number(info.transmission, layers.transmission);
   number(info.thickness, layers.thickness);
   number(info.attenuation_distance, layers.attenuation_distance);

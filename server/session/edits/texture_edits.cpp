@@ -47,6 +47,7 @@ TextureInfo describe_slot(const scene::Scene& scene, std::size_t material, const
   if (slot.texture == shared::no_texture) return info;
   const scene::Image& image = scene.images[scene.textures[slot.texture].image];
   info.file_image = image.name;
+  if (image.damaged) return info;
   info.width = image.width;
   info.height = image.height;
   return info;

@@ -54,7 +54,8 @@ class SceneLoader {
   void load(std::shared_ptr<Session> session, const protocol::SceneLoad& request, Textures textures,
             const std::string& by, Completion done);
   /// Shows the scene of the session with other textures, and with `edits` in place of its edits
-  /// if they are given. Answers also the requests of this kind that it replaces.
+  /// if they are given. Answers also the requests of this kind that it replaces. Fails while the
+  /// session waits for another scene.
   void load_textures(std::shared_ptr<Session> session, Textures textures,
                      std::optional<protocol::EditDocument> edits, const std::string& by,
                      Completion done);
@@ -125,7 +126,11 @@ class SceneLoader {
   std::vector<Waiter> remove_waiters(const std::function<bool(const Session&)>& matches,
                                      const Job* except = nullptr);
   void fail_waiters_of_ended_sessions();
+  bool loads_scene(const Session& session) const;
   std::shared_ptr<Job> find_job(const SceneKey& key) const;
+  /// Tells all viewers of a session how far the load is that `by` has requested.
+  static void send_progress(Session& session, const std::string& by, const std::string& name,
+                            std::string_view stage, float fraction, bool first_view = false);
   void report_progress(Job& job, std::string_view stage, float fraction);
   void throw_if_stopped(const Job& job);
 

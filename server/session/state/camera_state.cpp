@@ -197,13 +197,14 @@ bool CameraState::follows(const scene::Scene& scene, const std::string& clip) co
   return found && scene::carries(scene, *found, camera_);
 }
 
-protocol::Camera CameraState::message(std::uint32_t rev) const {
+protocol::Camera CameraState::message(std::uint32_t rev, std::uint32_t scene_rev) const {
   return {.eye = to_protocol(camera_.eye),
           .target = to_protocol(camera_.target),
           .up = to_protocol(camera_.up),
           .vertical_fov = camera_.vertical_fov,
           .name = name_,
           .fitted = fitted_,
+          .scene_rev = scene_rev,
           .rev = rev};
 }
 

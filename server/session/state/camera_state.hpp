@@ -44,7 +44,8 @@ class CameraState {
   std::vector<stream::InputEcho> inputs() const;
   /// Whether this clip moves the camera: while it is one of the scene's own, as it was made.
   bool follows(const scene::Scene& scene, const std::string& clip) const;
-  protocol::Camera message(std::uint32_t rev) const;
+  /// `scene_rev`: see SessionCore.
+  protocol::Camera message(std::uint32_t rev, std::uint32_t scene_rev) const;
 
  private:
   void move(const scene::Camera& camera, std::optional<std::string> name);

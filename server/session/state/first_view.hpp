@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 
 #include "scene/scene.hpp"
@@ -32,7 +33,8 @@ struct FirstView {
 
   std::shared_ptr<const scene::Scene> scene;
   std::shared_ptr<const render::SceneResources> resources;
-  CameraState camera;  // becomes the session's with the whole scene
+  CameraState camera;           // becomes the session's with the whole scene
+  std::uint32_t scene_rev = 0;  // likewise
 };
 
 }  // namespace heliograph::session

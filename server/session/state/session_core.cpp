@@ -54,7 +54,8 @@ void SessionCore::follow(const SessionCore& leader) {
       section.get() == leader.section.get() && clock == timeline.clock();
   const bool loaded = std::exchange(scene_loads, leader.scene_loads) != leader.scene_loads;
   if (same) return;
-  if (loaded && scene != leader.scene) camera.copy_from(leader.camera);
+  const bool other_scene = loaded && scene != leader.scene;
+  if (other_scene) camera.copy_from(leader.camera);
   scene = leader.scene;
   resources = leader.resources;
   scene_info = leader.scene_info;
@@ -65,6 +66,7 @@ void SessionCore::follow(const SessionCore& leader) {
   environment_name = leader.environment_name;
   settings = leader.settings;
   changed();
+  if (other_scene) scene_rev = rev;
 }
 
 void SessionCore::lead_camera(const std::string& by) {
@@ -77,7 +79,7 @@ void SessionCore::lead_camera(const std::string& by) {
     follower->camera.take_over(camera);
     follower->changed();
     follower->notify_others_latest<protocol::notifications::camera_changed>(
-        {}, {.camera = follower->camera.message(follower->rev), .by = by});
+        {}, {.camera = follower->camera_message(), .by = by});
     follower->lead_camera(by);
   }
 }
@@ -118,6 +120,11 @@ double SessionCore::clip_seconds() const {
 
 Result<void> SessionCore::require_shown_scene() const {
   return shows_first_view() ? Result<void>() : require_scene();
+}
+
+Result<void> SessionCore::require_scene_of(const std::optional<std::uint32_t>& asked) const {
+  if (!asked || *asked == shown_scene_rev()) return {};
+  return protocol::error::conflict("scene_rev", "is that of a scene which is not shown any more");
 }
 
 Result<void> SessionCore::require_scene() const {

@@ -75,6 +75,12 @@ struct SessionCore {
   const CameraState& shown_camera() const {
     return shows_first_view() ? first_view->camera : camera;
   }
+  std::uint32_t shown_scene_rev() const {
+    return shows_first_view() ? first_view->scene_rev : scene_rev;
+  }
+  protocol::Camera camera_message() const { return shown_camera().message(rev, shown_scene_rev()); }
+  /// Whether an input is meant for the scene that is shown: `asked` is its member scene_rev.
+  protocol::Result<void> require_scene_of(const std::optional<std::uint32_t>& asked) const;
   protocol::Result<void> require_scene() const;
   /// One that the camera's methods act on.
   protocol::Result<void> require_shown_scene() const;
@@ -132,6 +138,7 @@ struct SessionCore {
   std::shared_ptr<const scene::Scene> scene;
   std::shared_ptr<const render::SceneResources> resources;
   std::uint64_t scene_loads = 0;  // and unloads; other textures of a scene are none
+  std::uint32_t scene_rev = 1;    // revision from which on `scene` is shown
   protocol::SceneInfo scene_info;
   SceneEdits edits;
   NodeState nodes;

@@ -95,7 +95,8 @@ void main() {
   }
   Center c = center_at(constants, pixel, p);
   c.brightness = brightness(value);
-  c.noise = 1.0 / (constants.luminance_sigma * sqrt(max(variance, vec2(0.0))) + smallest_difference);
+  vec2 deviation = sqrt(max(variance, vec2(0.0)));
+  c.noise = 1.0 / (constants.luminance_sigma * deviation + smallest_difference);
   Line line;
   line.step = step_at(constants, c.roughness);
   line.middle = pixel + jitter(constants, pixel, line.step);

@@ -7,7 +7,8 @@
 // lobe of the same kind, white and without metal; sheen (KHR_materials_sheen) the lobe of Estevez
 // and Kulla 2017 with the visibility of Neubelt and Pettineo 2013. Each leaves to what lies under
 // it what it does not give back itself. The base's specular lobe may be rougher in one direction,
-// its grain (KHR_materials_anisotropy).
+// its grain (KHR_materials_anisotropy). A fraction of the diffuse light may leave at the other side
+// of the wall, which is thin, by a lobe of Lambert's there (KHR_materials_diffuse_transmission).
 #ifndef HELIOGRAPH_BRDF_GLSL
 #define HELIOGRAPH_BRDF_GLSL
 #include "lib/math/geometry.glsl"
@@ -26,8 +27,10 @@ struct SurfaceLayer {
   float sheen_roughness;
   float transmission;  // fraction of what enters the dielectric that is not scattered back
   vec3 transmitted;    // and what comes out of it behind, where the base colour is white
-  vec3 grain;          // direction in which the surface is rougher, unit length
-  float anisotropy;    // strength; 0: the surface has no grain
+  vec3 grain;                  // direction in which the surface is rougher, unit length
+  float anisotropy;            // strength; 0: the surface has no grain
+  float diffuse_transmission;  // fraction of the diffuse light that leaves at the other side
+  vec3 diffuse_tint;           // and its colour
 };
 
 /// A point of a surface as it looks from one direction.
@@ -40,9 +43,10 @@ struct SurfaceMaterial {
   // Fresnel reflectance: f0 + f90_minus_f0 x (1 - v.h)^5, multiple scattering included.
   vec3 f0;
   vec3 f90_minus_f0;
-  vec3 specular_albedo;  // albedo of the specular lobes under uniform white light
-  vec3 diffuse_albedo;   // and the diffuse lobe
-  vec3 transmitted;      // and what passes straight through
+  vec3 specular_albedo;      // albedo of the specular lobes under uniform white light
+  vec3 diffuse_albedo;       // and the diffuse lobe
+  vec3 diffuse_transmitted;  // and the diffuse lobe of light from the other side
+  vec3 transmitted;          // and what passes straight through
   vec3 coat_normal;
   float coat_n_dot_v;
   float coat_roughness;
@@ -76,7 +80,7 @@ float material_n_dot_v(vec3 normal, vec3 eye) { return clamp(dot(normal, eye), 1
 /// glTF's own model.
 SurfaceLayer plain_layer() {
   return SurfaceLayer(vec3(dielectric_f0), 1.0, vec3(0.0, 0.0, 1.0), 0.0, 0.0, vec3(0.0), 0.0, 0.0,
-                      vec3(0.0), vec3(1.0, 0.0, 0.0), 0.0);
+                      vec3(0.0), vec3(1.0, 0.0, 0.0), 0.0, 0.0, vec3(0.0));
 }
 
 /// Alpha of the base's specular lobe along the grain and across it (KHR_materials_anisotropy).
@@ -122,7 +126,9 @@ SurfaceMaterial make_material(vec3 base_color, float metallic, float roughness, 
   vec3 dielectric_albedo = (layer.f0 * split.x + layer.f90 * split.y) * dielectric_scale;
   float max_albedo = max(dielectric_albedo.r, max(dielectric_albedo.g, dielectric_albedo.b));
   float entering = (1.0 - metallic) * (1.0 - min(max_albedo, 1.0));
-  m.diffuse_albedo = entering * (1.0 - layer.transmission) * base_color;
+  float scattered = entering * (1.0 - layer.transmission);
+  m.diffuse_albedo = scattered * (1.0 - layer.diffuse_transmission) * base_color;
+  m.diffuse_transmitted = scattered * layer.diffuse_transmission * layer.diffuse_tint;
   m.transmitted = entering * layer.transmitted * base_color;
   m.coat_normal = normal;
   m.coat_n_dot_v = m.n_dot_v;
@@ -142,6 +148,7 @@ void cover(inout SurfaceMaterial m, float under) {
   m.f90_minus_f0 *= under;
   m.specular_albedo *= under;
   m.diffuse_albedo *= under;
+  m.diffuse_transmitted *= under;
   m.transmitted *= under;
   m.sheen *= under;
   m.sheen_albedo *= under;
@@ -173,11 +180,15 @@ void add_coat(inout SurfaceMaterial m, SurfaceLayer layer, vec2 split) {
 bool has_coat(SurfaceMaterial m) { return m.coat_albedo > 0.0; }
 bool has_sheen(SurfaceMaterial m) { return m.sheen != vec3(0.0); }
 bool has_grain(SurfaceMaterial m) { return m.anisotropy > 0.0; }
+bool scatters_through(SurfaceMaterial m) { return m.diffuse_transmitted != vec3(0.0); }
 
 /// What spreads widely of light from everywhere: the diffuse lobe and the sheen.
 vec3 wide_albedo(SurfaceMaterial m) {
   return has_sheen(m) ? m.diffuse_albedo + m.sheen_albedo : m.diffuse_albedo;
 }
+
+/// The same of light from both sides.
+vec3 spread_albedo(SurfaceMaterial m) { return wide_albedo(m) + m.diffuse_transmitted; }
 
 /// Of the narrower specular lobe.
 float specular_roughness(SurfaceMaterial m) {
@@ -291,6 +302,22 @@ vec3 shade_light(SurfaceMaterial m, vec3 l) {
   if (has_coat(m)) light += coat_light(m, l);
   if (has_sheen(m)) light += sheen_light(m, l);
   return light;
+}
+
+/// BTDF x cos for light arriving along -l from the other side.
+vec3 light_through(SurfaceMaterial m, vec3 l) {
+  return m.diffuse_transmitted * (max(-dot(m.normal, l), 0.0) / pi);
+}
+
+/// For light arriving along -l from either side of the triangle.
+vec3 shade_light_of_side(SurfaceMaterial m, vec3 l) {
+  if (dot(m.geometric, l) > 0.0) return shade_light(m, l);
+  return scatters_through(m) ? light_through(m, l) : vec3(0.0);
+}
+
+/// The triangle's normal on the side that is lit from direction `l`.
+vec3 lit_side(SurfaceMaterial m, vec3 l) {
+  return scatters_through(m) && dot(m.geometric, l) <= 0.0 ? -m.geometric : m.geometric;
 }
 
 #endif

@@ -38,6 +38,12 @@ Composition without_light(vec3 own) {
   return Composition(own, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), 0.0);
 }
 
+/// What the indirect signal is where nothing hides the environment.
+vec3 open_indirect(SurfaceMaterial m) {
+  if (!scatters_through(m)) return environment_irradiance(m.normal);
+  return environment_diffuse(m) / max(spread_albedo(m), vec3(1e-6));
+}
+
 Composition lit_composition(ivec2 pixel, float view_z) {
   SurfaceMaterial m = material_at(pixel);
   Composition terms = without_light(vec3(0.0));
@@ -47,7 +53,7 @@ Composition lit_composition(ivec2 pixel, float view_z) {
     terms.direct = direct_light(m, world_position(pixel, view_z), picks);
   }
   if (enabled(frame_indirect)) {
-    terms.indirect = wide_albedo(m);
+    terms.indirect = spread_albedo(m);
   } else if (enabled(frame_environment_diffuse)) {
     terms.ambient = environment_diffuse(m);
   }
@@ -55,7 +61,7 @@ Composition lit_composition(ivec2 pixel, float view_z) {
     terms.specular = specular_demodulator(m);
   } else if (enabled(frame_environment_specular)) {
     terms.ambient += environment_specular(m);
-    if (enabled(frame_indirect)) terms.sky = luminance(environment_irradiance(m.normal));
+    if (enabled(frame_indirect)) terms.sky = luminance(open_indirect(m));
   }
   terms.ambient *= imageLoad(base_color, pixel).a;  // the occlusion texture
   return terms;

@@ -13,9 +13,10 @@ struct EmissiveChoice {
 };
 
 /// One of some points, by what it sends (resampling; Talbot et al. 2005). `start` in [0, 1) says
-/// which they are; `pick` decides.
-EmissiveChoice choose_emissive(vec3 position, vec3 normal, vec3 geometric, float start,
-                               float pick) {
+/// which they are; `pick` decides. `near` and `behind`: factors on the light of either side of the
+/// receiver; points behind need a factor that is not 0.
+EmissiveChoice choose_emissive(vec3 position, vec3 normal, vec3 geometric, vec3 near, vec3 behind,
+                               float start, float pick) {
   EmissiveChoice choice = EmissiveChoice(vec3(0.0), 0.0, normal, 0.0);
   float weight = 0.0;
   for (uint i = 0u; i < emissive_candidates; ++i) {
@@ -26,9 +27,16 @@ EmissiveChoice choose_emissive(vec3 position, vec3 normal, vec3 geometric, float
     vec3 direction = way * inversesqrt(squared);
     float there = -dot(point.normal, direction);
     if (point.both > 0.0) there = abs(there);
+    float above = dot(geometric, direction);
     float here = dot(normal, direction) / pi;
-    if (point.density <= 0.0 || min(min(here, there), dot(geometric, direction)) <= 0.0) continue;
-    vec3 light = point.emission * emissive_share(point.density, here, there, squared);
+    vec3 factor = near;
+    if (above < 0.0 && behind != vec3(0.0)) {
+      above = -above;
+      here = -here;
+      factor = behind;
+    }
+    if (point.density <= 0.0 || min(min(here, there), above) <= 0.0) continue;
+    vec3 light = point.emission * emissive_share(point.density, here, there, squared) * factor;
     float sent = luminance(light);
     if (!takes(sent, choice.total, pick)) continue;
     weight = sent;
@@ -38,6 +46,12 @@ EmissiveChoice choose_emissive(vec3 position, vec3 normal, vec3 geometric, float
   }
   if (choice.total > 0.0) choice.light *= choice.total / weight;
   return choice;
+}
+
+/// Of a receiver that gets light from one side only.
+EmissiveChoice choose_emissive(vec3 position, vec3 normal, vec3 geometric, float start,
+                               float pick) {
+  return choose_emissive(position, normal, geometric, vec3(1.0), vec3(0.0), start, pick);
 }
 
 #endif

@@ -59,6 +59,8 @@ SurfaceMaterial surface_material(vec3 base_color, float metallic, float roughnes
   vec2 split = textureLod(split_sum_table, at, 0.0).rg;
   SurfaceMaterial m =
       make_material(base_color, metallic, roughness, normal, geometric, eye, split, layer);
+  // A constant, by which compilers leave out what it needs.
+  if (!scene_has(scene_diffuse_transmits)) m.diffuse_transmitted = vec3(0.0);
   if (scene_has(scene_layers) && layer.sheen != vec3(0.0)) {
     add_sheen(m, layer, textureLod(sheen_table, vec2(n_dot_v, layer.sheen_roughness), 0.0).r);
   }
@@ -71,7 +73,9 @@ SurfaceMaterial surface_material(vec3 base_color, float metallic, float roughnes
 
 /// The environment's diffuse light, as if nothing hid it. Sheen is wide enough to see it likewise.
 vec3 environment_diffuse(SurfaceMaterial m) {
-  return wide_albedo(m) * environment_irradiance(m.normal);
+  vec3 light = wide_albedo(m) * environment_irradiance(m.normal);
+  if (scatters_through(m)) light += m.diffuse_transmitted * environment_irradiance(-m.normal);
+  return light;
 }
 
 /// The environment's specular light by the split sum (Karis 2013), without occlusion.

@@ -35,6 +35,11 @@ vec3 gathered_light(Ray ray, Hit hit, RadianceCacheConstants c, out bool known) 
   // near a wall graze it, where it shines of what is opposite, and not of the sun above it.
   vec3 albedo = wide_albedo(m) + m.specular_albedo;
   light += albedo * (cached.direct + cached.indirect);
+  if (scatters_through(m)) {
+    CachedLight behind = cached_light(behind_place(at), hit.t, c);
+    known = known && behind.known;
+    light += m.diffuse_transmitted * (behind.direct + behind.indirect);
+  }
   return light * (scene_has(scene_blends) ? stopped_weight(s) : 1.0);
 }
 

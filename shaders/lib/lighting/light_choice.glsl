@@ -65,8 +65,7 @@ LightSample sample_lit_point(Light light, SurfaceMaterial m, vec3 position, vec2
     // Steps of the R2 sequence (Roberts 2018).
     vec2 at = fract(u + float(i) * vec2(0.7548776662, 0.5698402910));
     LightSample s = sample_light(light, position, at);
-    float cosine = dot(m.geometric, s.ray_direction);
-    float weight = cosine > 0.0 ? luminance(s.irradiance * shade_light(m, s.direction)) : 0.0;
+    float weight = luminance(s.irradiance * shade_light_of_side(m, s.direction));
     if (takes(weight, total, pick)) chosen = s;
   }
   valid = total > 0.0;
@@ -83,10 +82,10 @@ Ray light_ray(Light light, SurfaceMaterial m, vec3 position, float view_distance
   } else {
     s = sample_light(light, position, u);
     // The light's disk may reach below the horizon, where nothing of it is seen.
-    valid = dot(s.ray_direction, m.geometric) > 0.0;
+    valid = dot(s.ray_direction, lit_side(m, s.direction)) > 0.0;
   }
   Ray ray;
-  ray.origin = offset_origin(position, m.geometric, view_distance);
+  ray.origin = offset_origin(position, lit_side(m, s.direction), view_distance);
   ray.t_min = 0.0;
   ray.direction = s.ray_direction;
   // Geometry may lie where an area light does and show it: it must not occlude itself.

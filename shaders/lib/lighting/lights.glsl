@@ -146,11 +146,14 @@ vec3 light_contribution(Light light, SurfaceMaterial m, vec3 position) {
       energy += m.coat_albedo * area_light_shares(light, m.coat_normal, m.eye, m.coat_n_dot_v,
                                                   m.coat_roughness, position).y;
     }
+    if (scatters_through(m)) {
+      energy += m.diffuse_transmitted * area_light_shares(light, -m.normal, m.eye, m.n_dot_v,
+                                                          m.roughness, position).x;
+    }
     return light.color * energy;
   }
   LightSample s = light_at(light, position);
-  if (dot(m.geometric, s.direction) <= 0.0) return vec3(0.0);
-  return s.irradiance * shade_light(m, s.direction);
+  return s.irradiance * shade_light_of_side(m, s.direction);
 }
 
 /// Light that a surface sends to the eye from all lights, unshadowed.

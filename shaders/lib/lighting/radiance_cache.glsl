@@ -121,6 +121,9 @@ CachedLight cached_light(SeenPlace at, float t, RadianceCacheConstants c) {
   return CachedLight(vec3(0.0), vec3(0.0), 0.0, false);
 }
 
+/// The place on the other side of the triangle.
+SeenPlace behind_place(SeenPlace at) { return SeenPlace(at.position, -at.normal, !at.is_back); }
+
 /// What a surface sends to the eye of indirect light: `irradiance` / pi. Its specular lobes show the
 /// environment as far as the irradiance allows, and of the rest what comes from everywhere. `open`:
 /// the irradiance / pi of the environment alone, if nothing hid it.

@@ -30,7 +30,6 @@ layout(push_constant) uniform Constants {
   uint by_plan;
 };
 
-#include "lib/rays/stored_rays.glsl"
 #include "lib/scene/gbuffer_material.glsl"
 
 void main() {

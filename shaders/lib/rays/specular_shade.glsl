@@ -1,7 +1,6 @@
 // Light that comes back along specular rays: from what they met, or from the environment. Light of
 // lights at the hit waits for a shadow ray of its own.
 #define TEXTURE_ONE_LEVEL
-#include "lib/rays/stored_rays.glsl"
 #include "lib/scene/hit_material.glsl"
 #include "lib/lighting/light_choice.glsl"
 #include "lib/denoise/moments.glsl"
@@ -54,7 +53,15 @@ vec3 surrounding_light(HitSurface s, SurfaceMaterial m, float t, float roughness
   vec3 open = enabled(frame_environment_diffuse) ? environment_irradiance(m.normal) : vec3(0.0);
   vec3 light = reflected_light(m, cached.known ? cached.indirect : open * unknown_openness, open);
   lit = blurs_cell(cached, roughness, t);
-  return lit ? light + (wide_albedo(m) + m.specular_albedo) * cached.direct : light;
+  vec3 direct = (wide_albedo(m) + m.specular_albedo) * cached.direct;
+  if (scatters_through(m)) {
+    CachedLight behind = cached_light(behind_place(at), t, cache);
+    open = enabled(frame_environment_diffuse) ? environment_irradiance(-m.normal) : vec3(0.0);
+    light += m.diffuse_transmitted * (behind.known ? behind.indirect : open * unknown_openness);
+    direct += m.diffuse_transmitted * behind.direct;
+    lit = lit && behind.known;
+  }
+  return lit ? light + direct : light;
 #else
   vec3 light = enabled(frame_environment_diffuse) ? environment_diffuse(m) : vec3(0.0);
   if (enabled(frame_environment_specular)) light += environment_specular(m);

@@ -1,7 +1,6 @@
 // The G-buffer from camera rays instead of triangles: the surfaces that rays have met, with the same
 // signals as lib/scene/gbuffer_surface.glsl. Rays go on through back faces that are not drawn and through
 // blended surfaces. GBUFFER_LAYERED: with what extensions add to materials.
-#include "lib/rays/stored_rays.glsl"
 #include "lib/scene/coverage.glsl"
 #include "lib/math/octahedral.glsl"
 #include "lib/rays/ray_index.glsl"
@@ -57,11 +56,13 @@ void store(ivec2 pixel, Hit hit, HitSurface s) {
   imageStore(base_color, pixel, vec4(sqrt(s.base_color), s.occlusion));
   float unlit = (s.flags & material_unlit) != 0u ? 1.0 : 0.0;
   float roughness = s.roughness;
+  float through = 0.0;
 #ifdef GBUFFER_LAYERED
   imageStore(surface_layers, pixel, pack_layer(s.layer, roughness, s.normal));
   roughness = smoother_roughness(s.layer, roughness);
+  through = s.layer.diffuse_transmission;
 #endif
-  imageStore(surface, pixel, vec4(roughness, s.metallic, unlit, 0.0));
+  imageStore(surface, pixel, vec4(roughness, s.metallic, unlit, through));
   imageStore(motion, pixel, motion_of(hit, s, view_z));
   imageStore(emissive, pixel, vec4(s.emissive, 1.0));
   imageStore(depth_slope, pixel, vec4(plane_slope(pixel, s, view_z), 0.0, 0.0));

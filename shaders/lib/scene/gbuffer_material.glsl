@@ -13,7 +13,9 @@ SurfaceMaterial material_at(ivec2 pixel) {
   vec3 normal = octahedral_decode(encoded.xy);
   SurfaceLayer layer = plain_layer();
   if (scene_has(scene_layers)) {
-    layer = unpack_layer(imageLoad(surface_layers, pixel), normal, roughness);
+    uvec4 bits = imageLoad(surface_layers, pixel);
+    layer = unpack_layer(bits, normal, roughness);
+    if (scene_has(scene_diffuse_transmits)) unpack_tint(bits, normal, packed_surface.w, layer);
   }
   return surface_material(color.rgb * color.rgb, packed_surface.y, roughness, normal,
                           octahedral_decode(encoded.zw), to_eye(pixel), layer);

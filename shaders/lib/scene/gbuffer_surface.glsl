@@ -14,7 +14,8 @@ layout(location = 7) in vec3 world_point;
 
 layout(location = 0) out vec4 normals;     // octahedral: shading xy, geometric zw
 layout(location = 1) out vec4 base_color;  // square root of linear rgb, occlusion
-layout(location = 2) out vec4 surface;     // roughness of the smoother lobe, metallic, unlit
+layout(location = 2) out vec4 surface;     // roughness of the smoother lobe, metallic, unlit,
+                                           // diffuse transmission
 layout(location = 3) out vec4 motion;      // to the previous frame: uv, view Z; and view Z now
 layout(location = 4) out vec4 emissive;    // linear radiance
 layout(location = 5) out vec2 depth_slope; // view Z per pixel in x and y
@@ -45,7 +46,9 @@ layout(set = 2, binding = 14) uniform sampler2D thickness_map;
 layout(set = 2, binding = 15) uniform sampler2D iridescence_map;
 layout(set = 2, binding = 16) uniform sampler2D film_map;
 layout(set = 2, binding = 17) uniform sampler2D anisotropy_map;
-layout(set = 2, binding = 18, std140) uniform LayerBlock { MaterialLayer layer; };
+layout(set = 2, binding = 18) uniform sampler2D diffuse_transmission_map;
+layout(set = 2, binding = 19) uniform sampler2D diffuse_tint_map;
+layout(set = 2, binding = 20, std140) uniform LayerBlock { MaterialLayer layer; };
 #endif
 
 // No condition here hangs on constants and uniforms alone: lavapipe would make a new shader of
@@ -125,10 +128,16 @@ SurfaceLayer layer_here(vec3 normal, out ThinFilm film) {
   vec3 tangent, bitangent;
   bool has_tangent = tangent_plane(normal, tangent, bitangent);
   vec3 grain = has_tangent ? tangent * in_plane.x + bitangent * in_plane.y : vec3(0.0);
+  texels.diffuse_transmission =
+      detail(diffuse_transmission_map, slot_uv(layer.diffuse_transmission_texture)).a;
+  texels.diffuse_tint = detail(diffuse_tint_map, slot_uv(layer.diffuse_tint_texture)).rgb;
   vec3 coat_texel = detail(coat_normal_map, slot_uv(layer.coat_normal_texture)).xyz;
-  return surface_layer(layer, texels,
-                       mapped_normal(normal, coat_texel, layer.coat_normal_scale,
-                                     layer.coat_normal_texture.texture), grain);
+  SurfaceLayer made =
+      surface_layer(layer, texels,
+                    mapped_normal(normal, coat_texel, layer.coat_normal_scale,
+                                  layer.coat_normal_texture.texture), grain);
+  add_diffuse_transmission(layer, texels, made);
+  return made;
 }
 #endif
 
@@ -162,16 +171,18 @@ void main() {
   normals = vec4(octahedral_encode(shading), octahedral_encode(geometric));
   float roughness = material.roughness * packed_surface.g;
   float metallic = material.metallic * packed_surface.b;
+  float through = 0.0;
   vec3 base = clamp(color.rgb, 0.0, 1.0);
 #ifdef GBUFFER_LAYERED
   extended.coat_normal *= side;
   add_film(film, material_n_dot_v(shading, eye_here()), metallic, extended, base);
   surface_layers = pack_layer(extended, roughness, shading);
   roughness = smoother_roughness(extended, roughness);
+  through = extended.diffuse_transmission;
 #endif
   base_color = vec4(sqrt(base), mix(1.0, occlusion, material.occlusion_strength));
   surface = vec4(roughness, metallic,
-                 flag(material.flags, material_unlit), 0.0);
+                 flag(material.flags, material_unlit), through);
   vec2 uv_now = clip_now.xy / clip_now.z * 0.5;
   vec2 uv_before = clip_before.xy / clip_before.z * 0.5;
   motion = vec4(uv_before - uv_now, view_depths.y - view_depths.x, exact_view_z(geometric));

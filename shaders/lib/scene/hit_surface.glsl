@@ -178,9 +178,15 @@ SurfaceLayer evaluate_layer(HitTriangle t, TextureLookup lookup, vec3 normal, ou
   }
   texels.anisotropy = grain_texel.b;
   film = thin_film(from, texels);
-  return surface_layer(from, texels,
-                       mapped_normal(t, from.coat_normal_texture, from.coat_normal_scale, lookup,
-                                     normal), grain);
+  SurfaceLayer layer = surface_layer(from, texels,
+                                     mapped_normal(t, from.coat_normal_texture,
+                                                   from.coat_normal_scale, lookup, normal), grain);
+  if (scene_has(scene_diffuse_transmits) && from.diffuse_transmission > 0.0) {
+    texels.diffuse_transmission = slot_texel(from.diffuse_transmission_texture, lookup).a;
+    texels.diffuse_tint = slot_texel(from.diffuse_tint_texture, lookup).rgb;
+    add_diffuse_transmission(from, texels, layer);
+  }
+  return layer;
 }
 
 void evaluate_material(inout HitSurface s, HitTriangle t, TextureLookup lookup) {

@@ -18,6 +18,8 @@ struct LayerTexels {
   float iridescence;
   float film;
   float anisotropy;
+  float diffuse_transmission;
+  vec3 diffuse_tint;
 };
 
 ThinFilm thin_film(MaterialLayer from, LayerTexels texels) {
@@ -37,7 +39,8 @@ vec2 grain_in_plane(MaterialLayer from, vec2 texel) {
               from.grain_y * grain.x + from.grain_x * grain.y);
 }
 
-/// Without the film. `grain`: world space, of any length; 0 where there is none.
+/// Without the film and without diffuse transmission. `grain`: world space, of any length; 0 where
+/// there is none.
 SurfaceLayer surface_layer(MaterialLayer from, LayerTexels texels, vec3 coat_normal, vec3 grain) {
   SurfaceLayer layer;
   layer.f90 = from.specular * texels.specular;
@@ -53,10 +56,21 @@ SurfaceLayer surface_layer(MaterialLayer from, LayerTexels texels, vec3 coat_nor
   float size = dot(grain, grain);
   layer.grain = grain * inversesqrt(max(size, 1e-12));
   layer.anisotropy = size > 1e-6 ? from.anisotropy * texels.anisotropy : 0.0;
+  layer.diffuse_transmission = 0.0;
+  layer.diffuse_tint = vec3(0.0);
   return layer;
 }
 
+/// Of scenes that have any. The wall is thin: what it lets through is what the whole thickness of
+/// the volume leaves.
+void add_diffuse_transmission(MaterialLayer from, LayerTexels texels, inout SurfaceLayer layer) {
+  layer.diffuse_transmission = from.diffuse_transmission * texels.diffuse_transmission;
+  layer.diffuse_tint =
+      from.diffuse_tint * texels.diffuse_tint * exp(-from.absorption * texels.thickness);
+}
+
 const uint packed_grain = 1u << 30u;
+const uint packed_tint = 1u << 31u;
 
 /// The direction of a line in the plane of `normal`: 0 to 1, round the circle once for half a turn.
 float encode_grain(vec3 grain, vec3 normal) {
@@ -76,7 +90,8 @@ vec3 decode_grain(float share, vec3 normal) {
 
 /// Of a pixel that lets no light through. The base layer's roughness goes with it: the G-buffer's
 /// own is that of the smoother lobe. A grain about the shading `normal` takes bits of the coat's
-/// normal, which keeps 12 a coordinate, and of the sheen, which keeps 6 a component.
+/// normal, which keeps 12 a coordinate, and of the sheen, which keeps 6 a component. The tint of
+/// diffuse transmission takes the place of the coat's normal, which becomes the shading normal.
 uvec4 pack_layer(SurfaceLayer layer, float roughness, vec3 normal) {
   uvec3 f0 = uvec3(sqrt(clamp(layer.f0, 0.0, 1.0)) * 1023.0 + 0.5);
   vec2 coat_normal = octahedral_encode(layer.coat_normal);
@@ -92,6 +107,12 @@ uvec4 pack_layer(SurfaceLayer layer, float roughness, vec3 normal) {
     bits.x |= packed_grain;
     bits.y = n.x | n.y << 12u | grain.x << 24u;
     bits.w = s.r | s.g << 6u | s.b << 12u | s.a << 18u | grain.y << 24u;
+  }
+  if (layer.diffuse_transmission > 0.0) {
+    uvec3 tint = uvec3(sqrt(clamp(layer.diffuse_tint, 0.0, 1.0)) * 255.0 + 0.5);
+    uint strength = layer.anisotropy > 0.0 ? bits.y & 0xff000000u : 0u;
+    bits.x |= packed_tint;
+    bits.y = strength | tint.r | tint.g << 8u | tint.b << 16u;
   }
   return bits;
 }
@@ -111,7 +132,17 @@ SurfaceLayer unpack_layer(uvec4 bits, vec3 normal, out float roughness) {
   }
   roughness = coat.z;
   return SurfaceLayer(f0 * f0, coat.w, octahedral_decode(coat_normal), coat.x, coat.y,
-                      sheen.rgb * sheen.rgb, sheen.a, 0.0, vec3(0.0), grain, anisotropy);
+                      sheen.rgb * sheen.rgb, sheen.a, 0.0, vec3(0.0), grain, anisotropy, 0.0,
+                      vec3(0.0));
+}
+
+/// Of scenes that have any diffuse transmission. `fraction`: what the surface image has of it.
+void unpack_tint(uvec4 bits, vec3 normal, float fraction, inout SurfaceLayer layer) {
+  if ((bits.x & packed_tint) == 0u) return;
+  vec3 root = unpackUnorm4x8(bits.y).rgb;
+  layer.diffuse_transmission = fraction;
+  layer.diffuse_tint = root * root;
+  layer.coat_normal = normal;
 }
 
 /// Of the narrower specular lobe.

@@ -143,6 +143,8 @@ TEST_F(LayersKernel, MatchesShadersForEveryLayer) {
       {"film", film},
       {"brushed", brushed},
       {"brushed film, textured", brushed_film},
+      {"diffuse transmission", diffuse_transmission},
+      {"diffuse transmission, textured", textured_diffuse_transmission},
       {"all, textured", all_of_them}};
   for (const auto& [name, made] : layers) {
     KernelComparison({.layers = made}).expect_equal(name);
@@ -155,6 +157,8 @@ TEST_F(LayersKernel, MatchesShadersForAreaLights) {
   KernelComparison({.areas = true}).expect_equal("plain");
   KernelComparison({.layers = all_of_them, .areas = true}).expect_equal("layers");
   KernelComparison({.layers = brushed_film, .areas = true}).expect_equal("brushed film");
+  KernelComparison({.layers = textured_diffuse_transmission, .areas = true})
+      .expect_equal("diffuse transmission");
 }
 
 TEST_F(LayersKernel, MatchesShadersForBlendedSurfaces) {
@@ -162,6 +166,7 @@ TEST_F(LayersKernel, MatchesShadersForBlendedSurfaces) {
       {"plain", {.alpha = 0.6f}},
       {"orthographic", {.alpha = 0.6f, .orthographic = true}},
       {"transmission", {.layers = transmission}},
+      {"diffuse transmission", {.layers = diffuse_transmission, .areas = true, .alpha = 0.6f}},
       {"layers", {.layers = all_of_them, .areas = true, .alpha = 0.6f}}};
   for (auto [name, which] : cases) {
     KernelComparison(which).expect_equal_means(name);

@@ -7,9 +7,18 @@
 namespace heliograph::test {
 namespace {
 
-/// A sphere in the corner of a bright and a dark wall, with sun and a point light.
-std::shared_ptr<const scene::Scene> lit_corner() {
+/// A sphere in the corner of a bright and a dark wall, with sun and a point light. `leaf`: and a
+/// leaf that lets light through.
+std::shared_ptr<const scene::Scene> lit_corner(bool leaf) {
   SceneBuilder builder;
+  if (leaf) {
+    shared::Material green = surface({0.1f, 0.6f, 0.2f}, 0.6f);
+    green.flags = shared::material_double_sided;
+    const auto material = builder.with_layers(
+        green, {.diffuse_transmission = 0.7f, .diffuse_transmission_color = {0.8f, 0.9f, 0.2f}});
+    builder.place(builder.add_quad(
+        {{{-1, 0.5f, 1.5f}, {2, 0.5f, 1.5f}, {2, 2.5f, 0}, {-1, 2.5f, 0}}}, material));
+  }
   builder.place(builder.add_quad({{{-3, -1, 3}, {3, -1, 3}, {3, -1, -3}, {-3, -1, -3}}},
                                  surface({0.8f, 0.7f, 0.6f})));
   builder.place(builder.add_quad({{{-3, -1, -3}, {3, -1, -3}, {3, 3, -3}, {-3, 3, -3}}},
@@ -26,8 +35,8 @@ std::shared_ptr<const scene::Scene> lit_corner() {
 /// its own.
 class IndirectComparison {
  public:
-  explicit IndirectComparison(const protocol::Settings& settings = {})
-      : rig_(lit_corner(), camera(), {.extent = {96, 64}, .settings = settings}),
+  explicit IndirectComparison(const protocol::Settings& settings = {}, bool leaf = false)
+      : rig_(lit_corner(leaf), camera(), {.extent = {96, 64}, .settings = settings}),
         gbuffer_(render::trace_gbuffer(rig_.plan(), with_host_kernels(rig_, true))),
         shader_(trace(false)),
         host_(trace(true)) {
@@ -91,9 +100,9 @@ TEST_F(IndirectKernel, MatchesShadersWithoutCells) {
   EXPECT_LT(sampled, 0.9);
 }
 
-// Shaders make cells in another order and place them elsewhere: only means agree.
-TEST_F(IndirectKernel, GathersTheLightThatShadersGather) {
-  IndirectComparison comparison;
+/// Shaders make cells in another order and place them elsewhere: only means agree.
+void expect_same_means(bool leaf) {
+  IndirectComparison comparison({}, leaf);
   comparison.run(0, 48);
   glm::dvec3 by_shader(0.0), by_host(0.0);
   for (std::uint32_t frame = 48; frame < 64; ++frame) {
@@ -105,6 +114,20 @@ TEST_F(IndirectKernel, GathersTheLightThatShadersGather) {
     by_host += host.light;
   }
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(by_host[c] / by_shader[c], 1.0, 0.02) << c;
+}
+
+TEST_F(IndirectKernel, GathersTheLightThatShadersGather) {
+  expect_same_means(false);
+}
+
+// On both sides of the leaf, and what others get of it.
+TEST_F(IndirectKernel, GathersTheLightOfBothSides) {
+  IndirectComparison comparison({}, true);
+  comparison.run(0, 1);
+  const ErrorStatistics error = compare(comparison.shader(), comparison.host());
+  EXPECT_LT(error.mean, 2e-3);
+  EXPECT_LT(error.outliers, 6e-3);
+  expect_same_means(true);
 }
 
 TEST_F(IndirectKernel, GathersNothingWithoutLight) {

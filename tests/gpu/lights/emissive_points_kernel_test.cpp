@@ -8,8 +8,15 @@ namespace heliograph::test {
 namespace {
 
 /// A sphere between three walls, of which one shines, below a square that shines on both sides.
-std::shared_ptr<const scene::Scene> glowing_corner() {
+/// `screen`: and a screen before them that lets light through.
+std::shared_ptr<const scene::Scene> glowing_corner(bool screen) {
   SceneBuilder builder;
+  if (screen) {
+    const auto paper = builder.with_layers(
+        surface({0.9f, 0.8f, 0.7f}, 0.9f),
+        {.diffuse_transmission = 0.6f, .diffuse_transmission_color = {0.9f, 0.6f, 0.3f}});
+    builder.place(builder.add_quad({{{0, -1, 2}, {2, -1, 2}, {2, 1.5f, 2}, {0, 1.5f, 2}}}, paper));
+  }
   builder.place(builder.add_quad({{{-3, -1, 3}, {3, -1, 3}, {3, -1, -3}, {-3, -1, -3}}},
                                  surface({0.8f, 0.7f, 0.6f})));
   shared::Material wall = surface({0.9f, 0.2f, 0.1f}, 0.5f);
@@ -40,8 +47,8 @@ class EmissivePointsKernel : public testing::Test {
 
 // In the first frame no cell is known: what there is comes from shadow rays and the environment.
 // Later shaders make cells in another order, and only means agree.
-TEST_F(EmissivePointsKernel, LightsPixelsAndCellsAsShadersDo) {
-  FrameRig rig(glowing_corner(), toward_corner(), {.extent = {96, 64}});
+void expect_light_as_by_shaders(bool screen) {
+  FrameRig rig(glowing_corner(screen), toward_corner(), {.extent = {96, 64}});
   const render::GBuffer gbuffer = render::trace_gbuffer(rig.plan(), with_host_kernels(rig, true));
   const auto trace = [&](bool host) {
     const render::FrameInputs& in = with_host_kernels(rig, host);
@@ -71,6 +78,14 @@ TEST_F(EmissivePointsKernel, LightsPixelsAndCellsAsShadersDo) {
     add(rig.read(host), by_host);
   }
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(by_host[c] / by_shader[c], 1.0, 0.02) << c;
+}
+
+TEST_F(EmissivePointsKernel, LightsPixelsAndCellsAsShadersDo) {
+  expect_light_as_by_shaders(false);
+}
+
+TEST_F(EmissivePointsKernel, ShinesThroughAScreenAsShadersDo) {
+  expect_light_as_by_shaders(true);
 }
 
 }  // namespace

@@ -79,6 +79,9 @@ TEST_F(TracePathsKernel, MatchesShader) {
       {"film", {.layers = film}},
       {"brushed", {.layers = brushed}},
       {"brushed film, textured", {.layers = brushed_film, .areas = true, .shines = true}},
+      {"diffuse transmission", {.layers = diffuse_transmission}},
+      {"diffuse transmission, textured, emissive",
+       {.layers = textured_diffuse_transmission, .areas = true, .shines = true}},
       {"all, textured, emissive", {.layers = all_of_them, .areas = true, .shines = true}}};
   for (const auto& [name, which] : cases) {
     for (const int bounces : {1, 4}) {

@@ -71,6 +71,21 @@ scene::MaterialLayers transmission(SceneBuilder&) {
           .attenuation_distance = 0.3f,
           .attenuation_color = {0.9f, 0.5f, 0.7f}};
 }
+scene::MaterialLayers diffuse_transmission(SceneBuilder&) {
+  return {.diffuse_transmission = 0.6f, .diffuse_transmission_color = {0.9f, 0.5f, 0.2f}};
+}
+scene::MaterialLayers textured_diffuse_transmission(SceneBuilder& builder) {
+  scene::MaterialLayers layers = brushed_film(builder);
+  layers.diffuse_transmission = 0.9f;
+  layers.diffuse_transmission_color = {0.8f, 1.0f, 0.6f};
+  layers.diffuse_transmission_texture.texture = add_waves(builder, false, 3.5);
+  layers.diffuse_transmission_color_texture.texture = add_waves(builder, true, 4.5);
+  layers.diffuse_transmission_color_texture.uv_set = 1;
+  layers.thickness = 0.2f;
+  layers.attenuation_distance = 0.5f;
+  layers.attenuation_color = {0.9f, 0.8f, 0.4f};
+  return layers;
+}
 scene::MaterialLayers all_of_them(SceneBuilder& builder) {
   scene::MaterialLayers layers{.specular = 0.9f,
                                .specular_color = {0.9f, 0.8f, 0.7f},

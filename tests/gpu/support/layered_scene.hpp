@@ -14,6 +14,10 @@ scene::MaterialLayers brushed(SceneBuilder& builder);
 /// A textured film on a textured grain, under a coat and sheen.
 scene::MaterialLayers brushed_film(SceneBuilder& builder);
 scene::MaterialLayers transmission(SceneBuilder& builder);
+/// Light that is scattered to the other side.
+scene::MaterialLayers diffuse_transmission(SceneBuilder& builder);
+/// The same with textures, in a volume, on a grain and under a coat and sheen.
+scene::MaterialLayers textured_diffuse_transmission(SceneBuilder& builder);
 /// With a texture in every slot but that of the transmission, which keeps to its own surface.
 scene::MaterialLayers all_of_them(SceneBuilder& builder);
 

@@ -58,6 +58,10 @@ TEST_F(FirstViewUpload, SharesGeometryAndLooksAsWithoutIt) {
   EXPECT_NE(whole->rest_tables.materials.handle(), first->rest_tables.materials.handle());
   EXPECT_EQ(whole->rest_structure, first->rest_structure);
   EXPECT_EQ(render(whole), expected);
+  EXPECT_GE(whole->bytes(), first->bytes() + whole->texture_heap.texels.size() +
+                                whole->texture_heap.textures.size() +
+                                whole->rest_tables.materials.size())
+      << "what stays of the first view is counted";
   first.reset();
   EXPECT_EQ(render(whole), expected) << "what is shared stays";
 }
@@ -73,11 +77,14 @@ TEST_F(FirstViewUpload, HasAnotherStructureWhereRaysLookUpMasks) {
   ASSERT_FALSE(scene.alpha_heap.empty());
   scene::Scene plain = scene;
   for (shared::Material& material : plain.materials) material.alpha_mask = shared::no_texture;
-  const Resources first = upload_first(plain);
+  Resources first = upload_first(plain);
   const Resources whole = upload_after(scene, first);
   EXPECT_EQ(whole->rest_tables.vertices.handle(), first->rest_tables.vertices.handle());
   EXPECT_NE(whole->rest_structure, first->rest_structure);
-  EXPECT_EQ(render(whole), render(upload_after(scene, nullptr)));
+  const std::weak_ptr<const tracing::AccelerationStructure> structure = first->rest_structure;
+  first.reset();
+  EXPECT_TRUE(structure.expired()) << "nothing traces it any more";
+  EXPECT_EQ(render(whole), render(upload_after(scene, nullptr))) << "the geometry stays";
 }
 
 }  // namespace

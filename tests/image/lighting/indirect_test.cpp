@@ -270,6 +270,24 @@ TEST(Indirect, FollowsAWallThatMoves) {
   EXPECT_LT(indirect(), closed + 0.01 * (open - closed));
 }
 
+// Metals let no diffuse light through: what hides the environment from them is in front.
+TEST(Indirect, MetalsReflectTheSkyWhateverTheyWouldLetThrough) {
+  const auto seen = [](const scene::MaterialLayers& layers) {
+    SceneBuilder builder;
+    const auto metal = builder.with_layers(surface(glm::vec3(0.9f), 1.0f, 1.0f), layers);
+    builder.place(builder.add_quad({{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}}}, metal));
+    RendererRig rig(builder.build(), scene::constant_environment(glm::vec3(1.0f)),
+                    look({0, 0, 3}, {0, 0, 0}, 20.0f), 24, 24);
+    protocol::Settings settings = undenoised();
+    settings.indirect.enabled = true;
+    settings.specular.enabled = false;
+    return mean_color(rig, settings, "indirect_metal", 8).y;
+  };
+  const double expected = seen({});
+  EXPECT_GT(expected, 0.5);
+  EXPECT_NEAR(seen({.diffuse_transmission = 1.0f}) / expected, 1.0, 0.02);
+}
+
 TEST(Indirect, FramesDoNotDependOnThreads) {
   if (!device().is_cpu()) GTEST_SKIP() << "shaders make cells in any order";
   const auto frame = [] {

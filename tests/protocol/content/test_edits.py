@@ -129,6 +129,7 @@ class Edits(ServerTestCase):
         before = self.image()
         for patch in ({"sheen_color": [0, 0, 1], "sheen_roughness": 0.5},
                       {"specular_color": [0, 0, 0]}, {"ior": 2.5}, {"clearcoat": 1.0},
+                      {"diffuse_transmission": 1.0, "diffuse_transmission_color": [1, 0, 0]},
                       {"iridescence": 1.0, "iridescence_ior": 2.5,
                        "iridescence_thickness_maximum": 500}):
             changed = self.patch_material(**patch)["material"]
@@ -146,6 +147,8 @@ class Edits(ServerTestCase):
                                    ({"attenuation_distance": -1}, "patch.attenuation_distance", ""),
                                    ({"iridescence_ior": 0.5}, "patch.iridescence_ior", "1 to"),
                                    ({"anisotropy": 2}, "patch.anisotropy", "0 to 1"),
+                                   ({"diffuse_transmission": -1}, "patch.diffuse_transmission",
+                                    "0 to 1"),
                                    ({"anisotropy_rotation": 7}, "patch.anisotropy_rotation", ""),
                                    ({"dispersion": 0.5}, "patch.dispersion", ""),
                                    ({"transmission": 0.5}, "patch.transmission", ""),

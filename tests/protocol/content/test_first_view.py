@@ -11,6 +11,7 @@ import unittest
 import zlib
 
 from harness.gltf import document, grid, write_glb
+from harness.images import encode_png
 from harness.server import Server, ServerTestCase
 from harness.viewer import Viewer
 
@@ -68,17 +69,24 @@ class FirstViews(ServerTestCase):
         images = list(large_images())
         content, binary = textured(images)
         # Each name is loaded once: what is in the cache has no first view.
-        for name in ("watched", "unwatched", "cancelled"):
+        for name in ("watched", "unwatched", "cancelled", "dragged", "retextured"):
             write_glb(os.path.join(root, name + ".glb"), content, binary)
         damaged = images[:-1] + [images[-1][:-40] + b"\0" * 40]
         content, binary = textured(damaged)
         write_glb(os.path.join(root, "damaged.glb"), content, binary)
-        cls.server = Server("--scene", "mirror", "--strict-assets", scenes=root)
+        cls.uploads = tempfile.TemporaryDirectory()
+        cls.server = Server("--scene", "mirror", "--strict-assets", "--uploads", cls.uploads.name,
+                            scenes=root)
+
+    async def load_until_seen(self, viewer, name):
+        """Starts a load and waits until the camera is the scene's; returns the load and what was
+        told of the camera. Frames take much of the time that the load has left."""
+        load = asyncio.create_task(viewer.ask("scene.load", {"name": name}))
+        return load, await viewer.notification("camera.changed")
 
     async def first_view(self, viewer, name):
         """Starts a load and waits for its first frame; returns the load and the frame."""
-        load = asyncio.create_task(viewer.ask("scene.load", {"name": name}))
-        told = await viewer.notification("camera.changed")
+        load, told = await self.load_until_seen(viewer, name)
         rev = told["camera"]["rev"]
         frame = await viewer.frame_where(lambda it: it.header["state_rev"] >= rev)
         return load, frame
@@ -132,6 +140,45 @@ class FirstViews(ServerTestCase):
             self.assertEqual((await viewer.call("camera.get"))["eye"], before["eye"])
             self.assertEqual((await viewer.call("scene.info"))["name"], "mirror")
             self.assertFalse((await viewer.progress_with("cancelled"))["first_view"])
+            await viewer.rest()
+
+    async def test_a_drag_of_the_scene_before_does_not_move_the_new_camera(self):
+        async with Viewer(self.server) as viewer:
+            await viewer.call("scene.load", {"name": "mirror"})
+            since = (await viewer.call("camera.get"))["scene_rev"]
+            drag = {"eye": [0, 1, 4], "target": [0, 0, 0], "scene_rev": since}
+            self.assertEqual((await viewer.call("camera.set", drag))["scene_rev"], since)
+            viewer.notifications.clear()
+            load, _ = await self.load_until_seen(viewer, "dragged")
+            camera = await viewer.call("camera.get")
+            self.assertNotEqual(camera["scene_rev"], since)
+            self.assert_error(await viewer.ask("camera.set", drag), -32009, path="scene_rev")
+            orbit = {"yaw": 10, "scene_rev": since}
+            self.assert_error(await viewer.ask("camera.orbit", orbit), -32009, path="scene_rev")
+            self.assertEqual((await viewer.call("camera.get"))["eye"], camera["eye"])
+            moved = await viewer.call("camera.set", {**drag, "scene_rev": camera["scene_rev"]})
+            await load
+            after = await viewer.call("camera.get")
+            self.assertEqual(after["eye"], moved["eye"])
+            self.assertEqual(after["scene_rev"], camera["scene_rev"], "the scene is the same")
+            await viewer.rest()
+
+    async def test_textures_wait_for_the_scene_that_is_being_loaded(self):
+        status, _, answer = self.server.request("PUT", "/api/v1/images/red",
+                                                encode_png((255, 0, 0)))
+        self.assertEqual(status, 201, answer)
+        async with Viewer(self.server) as viewer:
+            await viewer.call("scene.load", {"name": "mirror"})
+            material = (await viewer.call("materials.list"))["materials"][0]["name"]
+            change = {"material": material, "slot": "base_color", "image": "red"}
+            edits = {"version": 1, "textures": [change]}
+            viewer.notifications.clear()
+            load, _ = await self.load_until_seen(viewer, "retextured")
+            for method, params in (("textures.set", change), ("edits.apply", {"edits": edits})):
+                answer = await viewer.ask(method, params)
+                self.assert_error(answer, -32050)
+                self.assertIn("a scene is being loaded", answer["error"]["message"])
+            self.assertEqual((await load)["result"]["name"], "retextured", "the load goes on")
             await viewer.rest()
 
     async def test_damage_in_a_texture_brings_the_scene_before_back(self):

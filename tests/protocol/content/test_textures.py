@@ -51,6 +51,11 @@ class Textures(ServerTestCase):
     def image(self):
         return decode_png(self.capture())
 
+    def jpeg(self):
+        _, _, file = self.server.request("GET", "/api/v1/sessions/main/frame.jpg?samples=1")
+        self.assertEqual(file[:2], b"\xff\xd8")
+        return file
+
     def texture(self, **choice):
         return self.server.call("textures.set", {
             "material": "diffuse", "slot": "base_color", **choice})["texture"]
@@ -95,6 +100,11 @@ class Textures(ServerTestCase):
         self.server.call("materials.patch", {"material": "diffuse", "patch": {"roughness": 0.25}})
         self.server.call("lights.remove", {"light": "sun"})
         self.server.call("selection.set", {"nodes": [0]})
+        uncut = {"planes": [], "cap_color": [0.0, 0.25, 0.75]}
+        self.server.call("section.set", uncut)
+        self.texture(image="green")
+        self.assertEqual(self.server.call("section.get")["cap_color"], uncut["cap_color"])
+        self.texture(image=None)
         self.server.call("section.set", {"planes": [{"normal": [1, 0, 0], "offset": 5}]})
         before = self.server.call("edits.get")["edits"]
         self.texture(image="red")
@@ -212,12 +222,29 @@ class Textures(ServerTestCase):
             status, _, answer = self.server.request("PUT", f"/api/v1/images/{name}", body)
             self.assertIn(status, (expected, 404), (name, answer))
             self.assertNotIn(self.uploads.name.encode(), answer)
+        for damaged, why in ((RED[:-30], b"is a damaged PNG: the data ends early"),
+                             (self.jpeg()[:-200], b"is a damaged JPEG"),
+                             (b"no image" * 20, b"is neither PNG, JPEG, WebP nor KTX2")):
+            status, _, answer = self.server.request("PUT", "/api/v1/images/hurt", damaged)
+            self.assertEqual(status, 400)
+            self.assertIn(b"the image hurt " + why, answer)
         status, _, answer = self.server.request("PUT", "/api/v1/images/red", RED)
         self.assertEqual((status, json.loads(answer)), (
             201, {"name": "red", "bytes": len(RED), "width": 4, "height": 4}))
         for method in ("GET", "DELETE", "POST"):
             status, headers, _ = self.server.request(method, "/api/v1/images/red")
             self.assertEqual((status, headers["allow"]), (405, "PUT"), method)
+
+    def test_an_image_that_was_damaged_since_is_not_shown_as_one_texel(self):
+        file = os.path.join(self.uploads.name, "images", "worn.png")
+        with open(file, "wb") as image:
+            image.write(RED[:-30])
+        self.addCleanup(os.remove, file)
+        answer = self.server.ask("textures.set", {
+            "material": "diffuse", "slot": "base_color", "image": "worn"})
+        self.assert_error(answer, -32602, path="image")
+        self.assertIn("is a damaged PNG", answer["error"]["message"])
+        self.assertEqual(self.replaced(), [])
 
     def test_an_image_that_is_uploaded_again_is_shown(self):
         status, _, _ = self.server.request("PUT", "/api/v1/images/changing", RED)
@@ -236,9 +263,7 @@ class Textures(ServerTestCase):
         upload(RED)
         for slot in ("base_color", "emissive"):
             self.texture(slot=slot, image="planks")
-        _, _, jpeg = self.server.request("GET", "/api/v1/sessions/main/frame.jpg?samples=1")
-        self.assertEqual(jpeg[:2], b"\xff\xd8")
-        upload(jpeg)  # the file of that name is another one now
+        upload(self.jpeg())  # the file of that name is another one now
         self.texture(slot="normal", image="green")
         self.assertEqual(sorted(one["image"] for one in self.replaced()),
                          ["green", "planks", "planks"])

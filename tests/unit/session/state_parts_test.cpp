@@ -37,7 +37,7 @@ TEST_F(CameraStateTest, OrbitKeepsTheDistanceAndClampsTheElevation) {
   ASSERT_TRUE(camera_.orbit({.pitch = 500.0f}, ""));
   EXPECT_NEAR(glm::length(camera_.camera().eye), 3.0f, 1e-5f);
   EXPECT_NEAR(camera_.camera().eye.y, 3.0f * std::sin(glm::radians(89.0f)), 1e-5f);
-  EXPECT_EQ(camera_.message(1).name, std::nullopt) << "it is not the scene's camera any more";
+  EXPECT_EQ(camera_.message(1, 1).name, std::nullopt) << "it is not the scene's camera any more";
 }
 
 TEST_F(CameraStateTest, ARefusedOrbitNamesTheMemberAndChangesNothing) {
@@ -80,7 +80,7 @@ TEST(FittedCamera, IsWithinTheRangeOfCameraSet) {
     EXPECT_TRUE(is_settable(camera.camera())) << from.x;
     camera.fit(scene.bounds, 1.5f);
     EXPECT_TRUE(is_settable(camera.camera())) << from.x;
-    const protocol::Camera message = camera.message(1);
+    const protocol::Camera message = camera.message(1, 1);
     EXPECT_TRUE(camera.set({.eye = message.eye, .target = message.target}, scene, "")) << from.x;
   }
 }

@@ -122,6 +122,11 @@ function main(): void {
     isBusy: () => navigation.active,
   };
   const rotation = new AutoRotate(cameraHost);
+  const player = new PathPlayer(cameraHost);
+  viewer.cameraMoves.stop = () => {
+    navigation.stop();
+    player.stop();
+  };
   const path = createPathOptions();
   const divider = createDivider(find("compare"));
   mountMjpegFallback(viewer, find("mjpeg"));
@@ -156,7 +161,7 @@ function main(): void {
       picker: createPicker(canvas, find("mark")),
       points,
     },
-    camera: { rotation, player: new PathPlayer(cameraHost), path, focus },
+    camera: { rotation, player, path, focus },
     selection: createPicker(canvas, find("mark")),
     upload: (file) => void uploadFile(viewer, file, toasts),
     uploadImage: (file) => uploadImage(viewer, file, toasts),

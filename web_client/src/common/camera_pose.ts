@@ -2,8 +2,9 @@ import type { Vector3 } from "heliograph/json.ts";
 import type { Camera } from "heliograph/messages.ts";
 import { add, cross, dot, length, normalize, scale, subtract } from "./vector.ts";
 
-/** A camera as the server sends it, or one made by this page, which has no revision yet. */
-export type CameraPose = Omit<Camera, "rev" | "fitted"> & Partial<Pick<Camera, "rev">>;
+/** A camera as the server sends it, or one made by this page, which has no revisions yet. */
+export type CameraPose = Omit<Camera, "rev" | "scene_rev" | "fitted"> &
+  Partial<Pick<Camera, "rev" | "scene_rev">>;
 
 /** Unit vectors across the image, and the distance to the target. */
 export function basis(camera: Pick<CameraPose, "eye" | "target" | "up">): {

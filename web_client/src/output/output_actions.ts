@@ -70,7 +70,7 @@ export function outputActions(viewer: Viewer, host: OutputHost): MenuItem[] {
         await copyText(href);
         host.inform(
           shortened
-            ? "Link copied. It does not contain all changed materials: there are too many."
+            ? "Link copied. It does not contain all changed materials and textures: there are too many."
             : "Link copied to the clipboard",
         );
       }),

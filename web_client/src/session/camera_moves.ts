@@ -20,6 +20,8 @@ interface CameraMovesHost {
   begins(): void;
   /** The user has moved the camera; `seq` numbers the message to the server. */
   moved(camera: CameraPose, seq: number): void;
+  /** Another scene is seen: what was moved last is not its camera. */
+  left(): void;
   attempt(action: () => Promise<unknown>): Promise<void>;
 }
 
@@ -29,9 +31,13 @@ export class CameraMoves {
     this.moveTo(camera, recorded);
   /** True while the user moves the camera; poses of other viewers are then ignored. */
   isBusy: () => boolean = () => false;
+  /** Ends the movement in progress. */
+  stop: () => void = () => {};
   place: (camera: CameraPose) => CameraPose = (camera) => camera;
   private readonly host: CameraMovesHost;
   private inputSeq = 0;
+  /** Of the scene whose camera the page has; null: it has none yet. */
+  private sceneRev: number | null = null;
 
   constructor(host: CameraMovesHost) {
     this.host = host;
@@ -40,6 +46,26 @@ export class CameraMoves {
   /** A new connection counts inputs from the start. */
   reset(): void {
     this.inputSeq = 0;
+    this.forgetScene();
+  }
+
+  /** Another session counts its own revisions. */
+  forgetScene(): void {
+    this.sceneRev = null;
+  }
+
+  /**
+   * The server tells this camera. Where it is one of another scene, no movement of the one before
+   * goes on. Whether it is.
+   */
+  arrived({ scene_rev }: CameraPose): boolean {
+    if (scene_rev === undefined || scene_rev === this.sceneRev) return false;
+    const isOther = this.sceneRev !== null;
+    this.sceneRev = scene_rev;
+    if (!isOther) return false;
+    this.stop();
+    this.host.left();
+    return true;
   }
 
   /** Sends an absolute pose of a movement. Call at most once per animation frame. */
@@ -50,7 +76,8 @@ export class CameraMoves {
     const seq = this.nextInput();
     this.host.moved(camera, seq);
     const { eye, target, up, vertical_fov } = camera;
-    this.host.rpc.notify("camera.set", { eye, target, up, vertical_fov, seq });
+    const scene_rev = this.sceneRev ?? undefined;
+    this.host.rpc.notify("camera.set", { eye, target, up, vertical_fov, seq, scene_rev });
   }
 
   /** Selects a camera of the scene. */
@@ -58,7 +85,9 @@ export class CameraMoves {
     await this.host.attempt(async () => {
       this.host.begins();
       const camera = await this.host.rpc.request("camera.set", { name, seq: this.nextInput() });
-      this.arrive(camera, recorded);
+      this.arrived(camera);
+      if (recorded) this.remember(camera);
+      this.host.camera.set(camera);
     });
   }
 
@@ -67,16 +96,12 @@ export class CameraMoves {
     await this.host.attempt(async () => {
       this.host.begins();
       const camera = await this.host.rpc.request("camera.fit", nodes ? { nodes } : {});
+      this.arrived(camera);
       const placed = this.place(camera);
       if (recorded) this.remember(placed);
       this.host.camera.set(camera);
       if (placed !== camera) this.moveTo(placed, false);
     });
-  }
-
-  private arrive(camera: CameraPose, recorded = true): void {
-    if (recorded) this.remember(camera);
-    this.host.camera.set(camera);
   }
 
   private nextInput(): number {

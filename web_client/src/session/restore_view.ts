@@ -6,6 +6,7 @@ import { ErrorCode } from "heliograph/messages.ts";
 import { ChannelClosed, RpcError, type RpcPeer, timedOut } from "heliograph/rpc.ts";
 import type { ControlGroup } from "heliograph/settings_schema.ts";
 import { type FileError, describeLoadError } from "./file_errors.ts";
+import { changesTowards } from "./edits/textures.ts";
 import { type Edits, patchesTowards } from "./scene_edits.ts";
 import { type ViewState, patchTowards, withoutPath } from "./view_state.ts";
 
@@ -40,6 +41,7 @@ export async function restoreView(host: RestoreHost, state: ViewState): Promise<
   if (host.ownsSession() && !(await hasScene(host))) return host.isCurrent();
   return run([
     restoreEnvironment,
+    restoreTextures,
     restoreLights,
     restoreMaterials,
     restoreNodes,
@@ -133,6 +135,27 @@ async function restoreEnvironment(host: RestoreHost, { environment }: ViewState)
   if (environment === undefined || !host.supports("environment.set")) return;
   const { current } = await host.rpc.request("environment.list");
   if (current !== environment) await host.rpc.request("environment.set", { name: environment });
+}
+
+/** The scene is loaded again once for all that are set at the same time. */
+async function restoreTextures(host: RestoreHost, { textures }: ViewState): Promise<void> {
+  if (!textures || !host.supports("textures.set")) return;
+  const { textures: current } = await host.rpc.request("textures.list", {});
+  const changes = changesTowards(current, textures);
+  const answers = await Promise.allSettled(
+    changes.map((change) => host.rpc.request("textures.set", change, loadTimeoutMs)),
+  );
+  const failures = answers.map((answer): unknown =>
+    answer.status === "rejected" ? answer.reason : null,
+  );
+  const stops = (error: unknown): boolean => !(error instanceof RpcError) || isTransient(error);
+  const stopping: unknown = failures.find((error) => error !== null && stops(error));
+  if (stopping) throw stopping;
+  changes.forEach(({ material, slot }, index) => {
+    if (failures[index]) {
+      host.reportSkipped(`The server rejects the previous ${slot} texture of ${material}`);
+    }
+  });
 }
 
 async function restoreLights(host: RestoreHost, { lights }: ViewState): Promise<void> {

@@ -33,6 +33,8 @@ interface SceneLoadingHost {
   viewer(): string;
   /** What the page shows; null while it shows no scene. */
   viewState(): ViewState | null;
+  /** Whether a whole view is being restored, whose steps are none of the history. */
+  isRestoring(): boolean;
   show(state: ViewState): void;
   sceneChanged(scene: SceneInfo): Promise<void>;
   reportFile(error: FileError): void;
@@ -63,14 +65,13 @@ export class SceneLoading {
     this.start({ kind: "scene", name, stage: "starting", fraction: 0, by: host.viewer() });
     try {
       const info = await host.rpc.request("scene.load", { name, ...part }, loadTimeoutMs);
-      if (before && recorded) {
-        host.history.add({
-          label: `scene ${name}`,
-          key: `scene ${name} ${JSON.stringify(part)}`,
-          undo: () => host.show(before),
-          redo: () => void this.load(name, part, false),
-        });
-      }
+      const step = before && {
+        label: `scene ${name}`,
+        key: `scene ${name} ${JSON.stringify(part)}`,
+        undo: () => host.show(before),
+        redo: () => void this.load(name, part, false),
+      };
+      host.history.keepScene(recorded ? step : null);
       await host.sceneChanged(info);
     } catch (error) {
       this.failed(name, error);
@@ -89,12 +90,33 @@ export class SceneLoading {
 
   progressed({ name, stage, fraction, first_view, by }: SceneProgress): void {
     if (finalStages.includes(stage)) {
-      if (stage !== "ready") this.end();
+      if (stage !== "ready") this.leave();
       return;
     }
-    if (first_view) this.revBeforeFirstView ??= this.newestRev;
-    else this.revBeforeFirstView = null;
+    if (first_view) this.enter();
+    else this.leaveFirstView();
     this.start({ kind: "scene", name, stage, fraction, by, firstView: this.seesFirstView() });
+  }
+
+  /** Whether viewers see another scene than that of the session. */
+  get seesAnother(): boolean {
+    return this.revBeforeFirstView !== null;
+  }
+
+  private enter(): void {
+    this.revBeforeFirstView ??= this.newestRev;
+    if (!this.host.isRestoring()) this.host.history.enterScene();
+  }
+
+  private leaveFirstView(): void {
+    this.revBeforeFirstView = null;
+    this.host.history.leaveScene();
+  }
+
+  /** The load has failed or was cancelled. */
+  private leave(): void {
+    this.leaveFirstView();
+    this.end();
   }
 
   private seesFirstView(): boolean {
@@ -103,6 +125,7 @@ export class SceneLoading {
 
   /** It is in effect from this revision of the session on: waits for a frame of it. */
   takesEffect(rev: number): void {
+    this.revBeforeFirstView = null;
     const { value } = this.current;
     if (!value) return;
     if (this.newestRev >= rev) return this.end();
@@ -133,7 +156,7 @@ export class SceneLoading {
   /** Revisions of another session are not comparable. */
   reset(): void {
     this.newestRev = 0;
-    this.end();
+    this.leave();
   }
 
   /** A load that was cancelled, or replaced by another one, is no error. */

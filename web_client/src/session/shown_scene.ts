@@ -16,6 +16,8 @@ interface ShownSceneHost {
   rpc(): RpcPeer;
   /** Frames of this revision are the first of what was read. */
   awaitFrame(rev: number): void;
+  /** The camera that was read, before it is shown. */
+  cameraArrived(camera: CameraPose): void;
   /** The camera that the server has fitted is to be fitted into what the page shows of a frame. */
   fit(): Promise<void>;
   mayMove(): boolean;
@@ -74,6 +76,7 @@ export class ShownScene {
     try {
       const info = await rpc.request("scene.info");
       const camera = await rpc.request("camera.get");
+      this.host.cameraArrived(camera);
       this.scene.set(info);
       this.camera.set(camera);
       this.host.awaitFrame(camera.rev);

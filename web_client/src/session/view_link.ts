@@ -1,7 +1,7 @@
 // A view state in the fragment of a URL, which browsers do not send to the server.
 
 import type { JsonObject, JsonValue, Vector3 } from "heliograph/json.ts";
-import type { Section } from "heliograph/messages.ts";
+import type { EditDocumentTextures, Section } from "heliograph/messages.ts";
 import { isObject } from "heliograph/settings_tree.ts";
 import type { CameraPose } from "../common/camera_pose.ts";
 import { checkedEdits, maxEdits } from "./scene_edits.ts";
@@ -18,10 +18,11 @@ const maxLinkLength = 8000;
 
 /** Hidden, isolated and selected nodes of a link. */
 const maxNodes = 256;
+const maxTextures = 64;
 
 interface Link {
   href: string;
-  /** Whether changes of lights or materials were left out. */
+  /** Whether changes of lights, materials or textures were left out. */
   shortened: boolean;
 }
 
@@ -29,10 +30,13 @@ interface Link {
 export function linkTo(page: string, state: ViewState): Link {
   const [lights, materials] = [state.lights, state.materials];
   if (!fitsIntoLink(state.nodes)) return linkTo(page, { ...state, nodes: undefined });
+  if (state.textures && state.textures.length > maxTextures) {
+    return { ...linkTo(page, { ...state, textures: undefined }), shortened: true };
+  }
   const [full, lit, bare] = [
     state,
     { ...state, materials: undefined },
-    { ...state, materials: undefined, lights: undefined },
+    { ...state, materials: undefined, textures: undefined, lights: undefined },
   ].map((view) => hrefOf(page, view)) as [string, string, string];
   const href = [full, lit].find(({ length }) => length <= maxLinkLength) ?? bare;
   const largest = Math.max(...[lights, materials].map((edits) => Object.keys(edits ?? {}).length));
@@ -84,6 +88,7 @@ function checked(value: unknown): ViewState | null {
   if (environment === null || typeof environment === "string") state.environment = environment;
   if (lights) state.lights = lights;
   if (materials) state.materials = materials;
+  if (isTextures(value.textures)) state.textures = value.textures;
   const nodes = checkedNodes(value.nodes);
   if (nodes) state.nodes = nodes;
   if (isSection(value.section)) state.section = value.section;
@@ -108,6 +113,17 @@ function checkedNodes(value: JsonValue | undefined): NodesShown | undefined {
 
 function isIdList(value: unknown): value is number[] {
   return Array.isArray(value) && value.every((id) => Number.isSafeInteger(id) && id >= 0);
+}
+
+function isTextures(value: unknown): value is EditDocumentTextures[] {
+  return Array.isArray(value) && value.length <= maxTextures && value.every(isTexture);
+}
+
+function isTexture(value: unknown): boolean {
+  if (!isObject(value)) return false;
+  const { material, slot, image } = value;
+  const named = typeof material === "string" && typeof slot === "string";
+  return named && (image === null || typeof image === "string");
 }
 
 function isSection(value: unknown): value is Section {

@@ -1,7 +1,7 @@
 // What the page shows, in a form for links, bookmarks and the restore after a reconnect.
 
 import type { JsonObject } from "heliograph/json.ts";
-import type { AnimationState, Section } from "heliograph/messages.ts";
+import type { AnimationState, EditDocumentTextures, Section } from "heliograph/messages.ts";
 import { type ControlGroup, allControls } from "heliograph/settings_schema.ts";
 import { joinPatches, patchOf, sameValue, valueAt } from "heliograph/settings_tree.ts";
 import type { CameraPose } from "../common/camera_pose.ts";
@@ -32,6 +32,7 @@ export interface ViewState {
   /** Differences from the scene's file. */
   lights?: Edits;
   materials?: Edits;
+  textures?: EditDocumentTextures[];
   nodes?: NodesShown;
   /** Planes that cut the scene open. */
   section?: Section;

@@ -63,6 +63,7 @@ export class Viewer {
   readonly shown = new ShownScene({
     rpc: () => this.rpc,
     awaitFrame: (rev) => this.awaitFirstFrame(rev),
+    cameraArrived: (camera) => this.cameraMoves.arrived(camera),
     fit: () => this.cameraMoves.fit(undefined, false),
     mayMove: () => this.membership.mayMove,
     isRestoring: () => this.viewRestore.pending !== null,
@@ -141,6 +142,7 @@ export class Viewer {
       history: this.history,
       viewer: () => this.receivedHello?.viewer ?? "",
       viewState: () => (this.scene.value ? this.viewState() : null),
+      isRestoring: () => this.viewRestore.pending !== null,
       show: (view) => void this.viewRestore.show(view),
       reportFile: (error) => this.onFileError(error),
       sceneChanged: (info) => this.ownSceneArrived(info),
@@ -160,6 +162,10 @@ export class Viewer {
         const { eye, target, up, vertical_fov } = camera;
         this.connection.predict({ eye, target, up, vertical_fov, seq });
         this.meters.responses.inputSent(seq, clockMs());
+      },
+      left: () => {
+        this.connection.predict(null);
+        this.history.leaveScene();
       },
       attempt: (action) => this.attempt(action),
     });
@@ -281,11 +287,13 @@ export class Viewer {
       variant: scene?.variant ?? undefined,
       environment: this.parts.environment.value?.current,
       ...this.parts.edits(),
+      textures: this.textures.edits(),
       nodes: this.nodes.shown(),
       section: this.section.state(),
       settings: changesOf(this.settings.schema.value, this.settings.tree.value),
       clip: this.shown.clip(),
-      camera: this.camera.value ?? undefined,
+      // What is seen of a scene that is being loaded has a camera of its own.
+      camera: this.loading.seesAnother ? undefined : (this.camera.value ?? undefined),
     };
   }
 
@@ -369,6 +377,7 @@ export class Viewer {
     this.connection.predict(null);
     this.company.pointers.forget(false);
     this.shown.restart();
+    this.cameraMoves.forgetScene();
     this.loading.reset();
     this.capabilities.reset();
     this.stream.sessionChanged();
@@ -405,9 +414,10 @@ export class Viewer {
     receiveNotification(this, method, params);
   }
 
-  /** Another viewer has moved the camera. */
+  /** Another viewer has moved the camera, or another scene is seen. */
   takeCamera(camera: CameraPose): void {
-    if (this.viewRestore.pending || this.cameraMoves.isBusy()) return;
+    if (this.viewRestore.pending) return;
+    if (!this.cameraMoves.arrived(camera) && this.cameraMoves.isBusy()) return;
     this.connection.predict(null);
     this.camera.set(camera);
   }

@@ -131,6 +131,17 @@ export class Navigation {
     this.schedule();
   }
 
+  /** Ends the movement in progress: what is held moves nothing until it is pressed again. */
+  stop(): void {
+    this.stopMotion();
+    this.pointers.clear();
+    this.heldKeys.clear();
+    this.pendingPose = null;
+    this.gesture = null;
+    this.movement += 1;
+    this.surface.classList.remove("grabbing");
+  }
+
   private get flying(): boolean {
     return [...this.heldKeys].some((key) => key in flyKeys);
   }
@@ -262,7 +273,7 @@ export class Navigation {
     if (event.key === "f" || event.key === "F") {
       this.host.fit();
     } else if (navigationKeys.has(key) || key in flyKeys) {
-      if (!this.heldKeys.has(key)) {
+      if (!this.heldKeys.has(key) && !event.repeat) {
         this.stopMotion();
         this.heldKeys.add(key);
         this.applyKeys(firstKeyStepMs);

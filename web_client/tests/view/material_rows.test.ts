@@ -30,6 +30,8 @@ const patch: Required<MaterialPatch> = {
   iridescence_thickness_maximum: 400,
   anisotropy: 0,
   anisotropy_rotation: 0,
+  diffuse_transmission: 0,
+  diffuse_transmission_color: [1, 1, 1],
   transmission: 1,
   thickness: 0,
   attenuation_distance: 0,

@@ -113,7 +113,8 @@ class BlendedLayer {
       sum = direct_light(tag, scene_.lights, scene_.tables.ltc, m, s.position, lanes);
     }
     if (enabled(shared::frame_environment_diffuse)) {
-      sum = sum + wide_albedo(m) * environment_.irradiance(m.normal);
+      sum = sum + environment_diffuse(m, [&](const Float3& normal)
+                                             HWY_ATTR { return environment_.irradiance(normal); });
     }
     if (enabled(shared::frame_environment_specular)) {
       sum = sum + environment_specular(m, [&](const Float3& normal, Float roughness) HWY_ATTR {

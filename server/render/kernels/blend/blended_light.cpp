@@ -34,6 +34,7 @@ class BlendedLight {
         tables_(job.lit_scene.tables),
         picks_(unsigned_tag, job.frame.sample_index, 40u, job.frame.seed),
         rates_(unsigned_tag, job.frame.sample_index, 50u, job.frame.seed),
+        sides_(unsigned_tag, job.frame.sample_index, shared::side_dimension, job.frame.seed),
         points_(unsigned_tag, job.frame.sample_index, 41u, job.frame.seed),
         around_(unsigned_tag, job.frame.sample_index, 42u, job.frame.seed),
         lobes_(unsigned_tag, job.frame.sample_index, 43u, job.frame.seed) {}
@@ -59,7 +60,8 @@ class BlendedLight {
     if (gathers) {
       around = wide_albedo(m);
     } else if (enabled(shared::frame_environment_diffuse)) {
-      around = wide_albedo(m) * environment_.irradiance(m.normal);
+      around = environment_diffuse(
+          m, [&](const Float3& normal) HWY_ATTR { return environment_.irradiance(normal); });
     }
     const Float roughness = narrower_roughness(m);
     // Roughness is stored in steps of 1 / 255: a little more than half of one is still the same.
@@ -78,7 +80,13 @@ class BlendedLight {
       around = select(traced, around, around + light);
     }
     const Float occlusion = gathers ? one() : s.occlusion;
-    add_ambient(m, pixel, throughput * around * occlusion, lanes, ray, to.ambient);
+    Ambient ambient{m.normal, m.geometric, around};
+    if (gathers && scatters_through(m)) {
+      choose_side(m, pixel, ambient);
+      ray.origin = offset_origin(s.position, ambient.geometric, view_z);
+    }
+    ambient.light = throughput * ambient.light * occlusion;
+    add_ambient(ambient, pixel, lanes, ray, to.ambient);
     store(pixel, lanes, {seen.x, seen.y, seen.z, view_z},
           pack_unorm8({roughness, s.metallic, zero(), zero()}));
   }
@@ -99,6 +107,10 @@ class BlendedLight {
     Float2 u;
     points_.at(x, y, u.x, u.y);
     const Mask seen = aim(job_.lit_scene.lights, light, m, s.position, u, pick, valid, ray);
+    if (scatters_through(m)) {
+      const Float view_z = hn::Neg(transform_row(job_.frame.view, 2, s.position));
+      ray.origin = offset_origin(s.position, lit_side(m, ray.direction), view_z);
+    }
     if (enabled(shared::frame_shadows)) {
       valid = seen;
     } else {
@@ -129,12 +141,31 @@ class BlendedLight {
     to.add(ray, hn::And(lanes, hn::Gt(largest_of(drawn.weight), zero())));
   }
 
-  /// `light` comes along it, or is what the light that it gathers is multiplied by.
-  HWY_INLINE void add_ambient(const Material& m, const PixelLanes& pixel, const Float3& light,
-                              Mask lanes, RayLanes ray, RayBatch& to) const {
+  /// A ray about `normal`: `light` comes along it, or is what the light that it gathers is
+  /// multiplied by.
+  struct Ambient {
+    Float3 normal, geometric, light;
+  };
+
+  /// Light from both sides is gathered on one of them, in proportion to what reaches the eye.
+  HWY_INLINE void choose_side(const Material& m, const PixelLanes& pixel, Ambient& ambient) const {
+    const Float through = luminance(transmitted_albedo(m));
+    const Float pick_behind = through / at_least(through + luminance(ambient.light), 1e-6f);
+    const Float pick = sides_.at(as_unsigned(pixel.x), as_unsigned(pixel.y));
+    const Mask behind = hn::Lt(pick, pick_behind);
+    const Float near = at_least(one() - pick_behind, 1e-6f);
+    const Float3 from_behind = transmitted_albedo(m) * (one() / at_least(pick_behind, 1e-6f));
+    ambient.light = select(behind, from_behind, ambient.light * (one() / near));
+    ambient.normal = select(behind, -m.normal, m.normal);
+    ambient.geometric = select(behind, -m.geometric, m.geometric);
+  }
+
+  HWY_INLINE void add_ambient(const Ambient& ambient, const PixelLanes& pixel, Mask lanes,
+                              RayLanes ray, RayBatch& to) const {
+    const Float3& light = ambient.light;
     Float u, v;
     around_.at(as_unsigned(pixel.x), as_unsigned(pixel.y), u, v);
-    ray.direction = sample_cosine(m.normal, u, v);
+    ray.direction = sample_cosine(ambient.normal, u, v);
     const bool gathers = job_.constants.gathers != 0;
     const bool open = !gathers && !enabled(shared::frame_ambient_occlusion);
     ray.t_max = number(gathers ? 1e30f : open ? 0.0f : job_.frame.ambient_radius);
@@ -142,7 +173,7 @@ class BlendedLight {
     const auto differs = [](Float c) HWY_ATTR { return hn::Ne(c, zero()); };
     Mask valid =
         hn::And(lanes, hn::Or(differs(light.x), hn::Or(differs(light.y), differs(light.z))));
-    if (!open) valid = hn::And(valid, hn::Gt(dot(ray.direction, m.geometric), zero()));
+    if (!open) valid = hn::And(valid, hn::Gt(dot(ray.direction, ambient.geometric), zero()));
     to.add(ray, valid);
   }
 
@@ -161,7 +192,7 @@ class BlendedLight {
   glm::vec2 cone_;
   EnvironmentLanes environment_;
   LobeLanes<Tag> tables_;
-  RandomNumbers<UnsignedTag> picks_, rates_;
+  RandomNumbers<UnsignedTag> picks_, rates_, sides_;
   RandomPairs<UnsignedTag> points_, around_, lobes_;
 };
 

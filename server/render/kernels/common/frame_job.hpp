@@ -31,4 +31,9 @@ inline bool has_layers(std::uint32_t features) {
   return (features & shared::scene_layers) != 0;
 }
 
+/// Whether a scene with these features may have surfaces that scatter light to their other side.
+inline bool scatters_through(std::uint32_t features) {
+  return (features & shared::scene_diffuse_transmits) != 0;
+}
+
 }  // namespace heliograph::render::kernels

@@ -119,6 +119,25 @@ HWY_INLINE void pack_grain(const SurfaceLayer<Float>& layer, const Float3& norma
   packed.w = select(grained, as_float(hn::Or(sheen, hn::ShiftLeft<24>(direction))), packed.w);
 }
 
+/// Replaces `packed` in lanes that scatter light to their other side.
+HWY_INLINE void pack_tint(const SurfaceLayer<Float>& layer, Float4& packed) {
+  const Mask tinted = hn::Gt(layer.diffuse_transmission, zero());
+  if (none(tinted)) return;
+  const auto root = [](Float value) HWY_ATTR {
+    return truncated(
+        hn::MulAdd(hn::Sqrt(clamped(value, 0.0f, 1.0f)), number(255.0f), number(0.5f)));
+  };
+  const Float3& tint = layer.diffuse_tint;
+  const Integer color =
+      hn::Or(root(tint.x), hn::Or(hn::ShiftLeft<8>(root(tint.y)), hn::ShiftLeft<16>(root(tint.z))));
+  const Integer strength =
+      hn::IfThenElseZero(integer_mask(hn::Gt(layer.anisotropy, zero())),
+                         hn::And(as_integer(packed.y), integer(static_cast<int>(0xff000000u))));
+  const Integer flag = integer(static_cast<int>(packed_tint));
+  packed.x = select(tinted, as_float(hn::Or(as_integer(packed.x), flag)), packed.x);
+  packed.y = select(tinted, as_float(hn::Or(color, strength)), packed.y);
+}
+
 /// pack_layer() of shaders/lib/scene/layers.glsl
 HWY_INLINE Float4 pack_layer(const SurfaceLayer<Float>& layer, Float roughness,
                              const Float3& shading_normal) {
@@ -140,6 +159,7 @@ HWY_INLINE Float4 pack_layer(const SurfaceLayer<Float>& layer, Float roughness,
                 as_float(pack_unorm8({hn::Sqrt(sheen.x), hn::Sqrt(sheen.y), hn::Sqrt(sheen.z),
                                       layer.sheen_roughness}))};
   pack_grain(layer, shading_normal, normal, packed);
+  pack_tint(layer, packed);
   return packed;
 }
 
@@ -181,13 +201,14 @@ class GBufferShading {
     to.depth_slope = plane_slope(pixel, s, view_z);
     to.emissive = {half(s.emissive.x, s.emissive.y), half(s.emissive.z, one())};
     to.base_color = as_float(pack_unorm8(color));
-    Float roughness = s.roughness;
+    Float roughness = s.roughness, through = zero();
     if constexpr (Surface::layered) {
       to.layers = pack_layer(s.layer, roughness, s.normal);
       const Mask coated = hn::Gt(s.layer.coat, zero());
       roughness = select(coated, hn::Min(roughness, s.layer.coat_roughness), roughness);
+      through = s.layer.diffuse_transmission;
     }
-    to.surface = as_float(pack_unorm8({roughness, s.metallic, unlit, zero()}));
+    to.surface = as_float(pack_unorm8({roughness, s.metallic, unlit, through}));
     to.instance = as_float(hn::Add(hit.instance, integer(1)));
     return to;
   }

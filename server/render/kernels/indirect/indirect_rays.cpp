@@ -12,6 +12,7 @@
 #include "render/kernels/simd/random.hpp"
 #include "render/kernels/simd/stored_triples.hpp"
 #include "render/kernels/simd/tiles.hpp"
+#include "render/kernels/simd/two_sided_light.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
@@ -21,6 +22,8 @@ class IndirectRays {
   explicit IndirectRays(const IndirectRaysJob& job)
       : job_(job),
         camera_(job.frame),
+        tables_(job.tables),
+        sides_(unsigned_tag, job.frame.sample_index, shared::side_dimension, job.frame.seed),
         directions_(unsigned_tag, job.frame.sample_index, 3u, job.frame.seed) {}
 
   HWY_INLINE void generate(const Tile& tile) const {
@@ -54,11 +57,13 @@ class IndirectRays {
   HWY_INLINE RayLanes ray_of(const PixelLanes& pixels) const {
     const Float view_z = gathered_last(job_.motion, pixels);
     const Float4 encoded = gathered4(job_.normals, pixels);
-    const Float3 geometric = octahedral_decode(encoded.z, encoded.w);
+    Float3 geometric = octahedral_decode(encoded.z, encoded.w);
+    Float3 shading = octahedral_decode(encoded.x, encoded.y);
+    Float share = zero(), side_weight = one();
+    if (job_.both_sides) choose_side(pixels, shading, geometric, share, side_weight);
     Float u, v;
     directions_.at(as_unsigned(pixels.x), as_unsigned(pixels.y), u, v);
     RayLanes ray;
-    const Float3 shading = octahedral_decode(encoded.x, encoded.y);
     const Float3 position = camera_.world_position(pixels, view_z);
     Float weight = one();
     if (job_.constants.guided != 0) guide(position, geometric, u, v, weight);
@@ -70,8 +75,27 @@ class IndirectRays {
     const Float below = hn::Min(dot(ray.direction, geometric), zero());
     ray.direction = multiply_add(geometric, below * number(-2.0f), ray.direction);
     const Float density = cosine_density(at_least(dot(ray.direction, shading), 0.0f));
-    ray.user = {zero(), weight, density};
+    ray.user = {share, weight * side_weight, density};
     return ray;
+  }
+
+  /// Turns the normals of pixels that scatter light through to the side that their rays leave to.
+  /// `share`: what the light is multiplied by, packed.
+  HWY_INLINE void choose_side(const PixelLanes& pixels, Float3& shading, Float3& geometric,
+                              Float& share, Float& weight) const {
+    Mask through = hn::Gt(gathered_unorm8(job_.surface, pixels).w, zero());
+    if (none(through)) return;
+    const auto m = gbuffer_material<true>(job_, pixels, camera_.to_eye(pixels), tables_);
+    through = hn::And(through, hn::Gt(largest_of(transmitted_albedo(m)), zero()));
+    const SideShares shares = side_shares(m);
+    const Float pick = sides_.at(as_unsigned(pixels.x), as_unsigned(pixels.y));
+    const Mask behind = hn::And(through, hn::Lt(pick, shares.pick_behind));
+    shading = select(behind, -shading, shading);
+    geometric = select(behind, -geometric, geometric);
+    const Float probability = select(behind, shares.pick_behind, one() - shares.pick_behind);
+    weight = select(through, one() / at_least(probability, 1e-6f), one());
+    share =
+        hn::IfThenElseZero(through, pack_side_share(select(behind, shares.behind, shares.near)));
   }
 
   HWY_INLINE void guide(const Float3& position, const Float3& normal, Float& u, Float& v,
@@ -92,6 +116,8 @@ class IndirectRays {
 
   const IndirectRaysJob& job_;
   CameraLanes camera_;
+  LobeLanes<Tag> tables_;
+  RandomNumbers<UnsignedTag> sides_;
   RandomPairs<UnsignedTag> directions_;
 };
 

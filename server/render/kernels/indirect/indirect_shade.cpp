@@ -7,6 +7,7 @@
 // After the line above, which compiles this file once for each instruction set.
 #include "render/kernels/simd/radiance_cache.hpp"
 #include "render/kernels/simd/tiles.hpp"
+#include "render/kernels/simd/two_sided_light.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
@@ -14,7 +15,10 @@ namespace heliograph::render::kernels::HWY_NAMESPACE {
 HWY_INLINE void store_light(const IndirectShadeJob& job, const RayLanes& ray,
                             const GatheredLanes& gathered, Mask requested) {
   const Mask known = gathered.known;
-  const Float3 light = gathered.light * ray.user.y;
+  Float3 light = gathered.light * ray.user.y;
+  if (!none(float_mask(hn::Ne(as_integer(ray.user.x), integer(0))))) {
+    light = light * unpack_side_share(ray.user.x);
+  }
   const Texels<4> texels(
       Float4{hn::IfThenElseZero(known, light.x), hn::IfThenElseZero(known, light.y),
              hn::IfThenElseZero(known, light.z), select(known, one(), number(-1.0f))});

@@ -168,6 +168,7 @@ struct IndirectRaysBindings {
   gpu::Read<Stage> planned;    // r32ui, shaders/shared/sampling.h, or anything
   gpu::Write<Stage> radiance;  // rgba32f; cleared; w < 0 where the plan leaves it out
   gpu::ReadBuffer<Stage, shared::GuideEntry> guide;
+  gpu::Read<Stage> base_color, surface, layers;
 };
 struct IndirectRaysConstants {
   std::uint32_t by_plan;  // 0: every pixel is sampled
@@ -176,6 +177,8 @@ struct IndirectRaysConstants {
   float least_size;
 };
 struct IndirectRaysJob : FrameJob<IndirectRaysBindings, IndirectRaysConstants> {
+  bool both_sides;  // surfaces of the scene may scatter light to their other side
+  LobeTables tables;
   Rows rows;  // whose rays are made
 };
 void indirect_rays(const IndirectRaysJob& job);

@@ -27,8 +27,11 @@ struct IndirectLightsBindings {
   gpu::Read<Stage> radiance;  // rgba32f; w < 0: no ray
   gpu::ReadBuffer<Stage, shared::EmissivePoint> points;
   RaySink<Stage> rays;
+  gpu::Read<Stage> base_color, surface, layers;
 };
 struct IndirectLightsJob : FrameJob<IndirectLightsBindings> {
+  bool both_sides;  // surfaces of the scene may scatter light to their other side
+  LobeTables tables;
   Rows rows;  // whose rays are made
 };
 void indirect_lights(const IndirectLightsJob& job);

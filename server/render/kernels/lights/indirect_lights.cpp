@@ -18,6 +18,7 @@ class IndirectLights {
   explicit IndirectLights(const IndirectLightsJob& job)
       : job_(job),
         camera_(job.frame),
+        tables_(job.tables),
         numbers_(unsigned_tag, job.frame.sample_index, 8u, job.frame.seed) {}
 
   HWY_INLINE void generate(const Tile& tile) const {
@@ -45,12 +46,22 @@ class IndirectLights {
     const Float3 position = camera_.world_position(pixels, view_z);
     Float start, pick;
     numbers_.at(as_unsigned(pixels.x), as_unsigned(pixels.y), start, pick);
-    const EmissiveChoice choice = choose_emissive(
-        job_.points, position, octahedral_decode(encoded.x, encoded.y), geometric, start, pick);
+    const Float3 normal = octahedral_decode(encoded.x, encoded.y);
+    Mask through = both_sided(pixels);
+    EmissiveChoice choice;
+    Float3 side = geometric;
+    if (none(through)) {
+      choice = choose_emissive(job_.points, position, normal, geometric, start, pick);
+    } else {
+      const SideShares shares = shares_of(pixels, through);
+      choice = choose_emissive(job_.points, position, normal, geometric, start, pick, &shares);
+      const Mask behind = hn::And(through, hn::Lt(dot(geometric, choice.direction), zero()));
+      side = select(behind, -geometric, geometric);
+    }
     requested = hn::And(requested, hn::Gt(choice.total, zero()));
     RayLanes ray;
     ray.direction = choice.direction;
-    ray.origin = offset_origin(position, geometric, view_z);
+    ray.origin = offset_origin(position, side, view_z);
     ray.t_min = zero();
     ray.t_max = choice.distance * number(0.999f);
     ray.pixel = pack_pixel(pixels);
@@ -58,8 +69,25 @@ class IndirectLights {
     return ray;
   }
 
+  HWY_INLINE Mask both_sided(const PixelLanes& pixels) const {
+    if (!job_.both_sides) return hn::Lt(one(), zero());
+    return hn::Gt(gathered_unorm8(job_.surface, pixels).w, zero());
+  }
+
+  /// Factors on the light of each side; others than `through` get all from one. Leaves there those
+  /// whose light comes through.
+  HWY_INLINE SideShares shares_of(const PixelLanes& pixels, Mask& through) const {
+    const auto m = gbuffer_material<true>(job_, pixels, camera_.to_eye(pixels), tables_);
+    through = hn::And(through, hn::Gt(largest_of(transmitted_albedo(m)), zero()));
+    SideShares shares = side_shares(m);
+    shares.near = select(through, shares.near, numbers(1.0f));
+    shares.behind = keep(through, shares.behind);
+    return shares;
+  }
+
   const IndirectLightsJob& job_;
   CameraLanes camera_;
+  LobeLanes<Tag> tables_;
   RandomPairs<UnsignedTag> numbers_;
 };
 

@@ -63,9 +63,11 @@ class PathLights {
     const bool areas = std::exchange(choice.areas, false);
     aim(lights, choice, at.m, at.position, u, pick, valid, from);
     if (areas) aim_at_areas(at, u, valid, choice, from);
+    // The light's disk may reach below the horizon, where nothing of it is seen.
+    const Mask seen = hn::Gt(dot(from.direction, lit_side(at.m, choice.direction)), zero());
     if ((job_.frame.flags & shared::frame_shadows) == 0) from.t_max = zero();
     from.user = at.throughput * choice.contribution * (choice.total / choice.weight);
-    add_above(at, from, valid, to);
+    add_lit(at, from, hn::And(valid, seen), to);
   }
 
   /// Along a direction drawn from the environment's own table.
@@ -74,14 +76,14 @@ class PathLights {
         cells_.sample(numbers_.sky_cell.at(at.pixel), numbers_.sky_point.at(at.pixel));
     from.direction = sky.direction;
     from.t_max = number(1e30f);
-    const Mask above = hn::And(lanes, hn::Gt(dot(sky.direction, at.m.geometric), zero()));
-    if (none(above)) return;
+    const Mask lit = hn::And(lanes, is_lit_from(at.m, sky.direction));
+    if (none(lit)) return;
     const bool diffuse = (job_.frame.flags & shared::frame_environment_diffuse) != 0;
     const bool specular = (job_.frame.flags & shared::frame_environment_specular) != 0;
     from.user = at.throughput *
                 scattered_light(at.m, sky.direction, sky.density, diffuse, specular) *
                 environment_.radiance(sky.direction);
-    add_above(at, from, above, to);
+    add_lit(at, from, lit, to);
   }
 
   /// To a point of an emissive triangle, drawn by power. The cones of rays there have this width
@@ -104,7 +106,7 @@ class PathLights {
     if (none(shines)) return;
     from.user =
         at.throughput * light.emission * scattered_light(at.m, from.direction, density, true, true);
-    add_above(at, from, shines, to);
+    add_lit(at, from, shines, to);
   }
 
   /// How likely add_emissive() finds what rays along `direction` have met, per steradian. 0: never.
@@ -129,19 +131,23 @@ class PathLights {
       if (none(chosen)) continue;
       const AreaSample<Float> s = sample_area(lights[i], at.position, u);
       const Float3 sent =
-          numbers(lights[i].color) * s.solid_angle * shade_light(tag, at.m, s.direction);
+          numbers(lights[i].color) * s.solid_angle * shade_light_of_side(tag, at.m, s.direction);
       ray.direction = select(chosen, s.direction, ray.direction);
+      choice.direction = select(chosen, s.direction, choice.direction);
       // Geometry may lie where an area light does and show it: it must not occlude itself.
       ray.t_max = select(chosen, s.distance * number(0.999f), ray.t_max);
       choice.contribution = select(chosen, sent, choice.contribution);
     }
   }
 
-  /// Rays that carry anything and begin on the side of their triangle that the eye sees.
-  HWY_INLINE void add_above(const At& at, const RayLanes& ray, Mask lanes, RayBatch& to) const {
-    const Mask above = hn::Gt(dot(ray.direction, at.m.geometric), zero());
+  /// Rays that carry anything and begin on a side of their triangle that light reaches.
+  HWY_INLINE void add_lit(const At& at, RayLanes ray, Mask lanes, RayBatch& to) const {
+    const Mask lit = is_lit_from(at.m, ray.direction);
     const Mask carries = hn::Gt(largest_of(ray.user), zero());
-    to.add(ray, hn::And(lanes, hn::And(above, carries)));
+    if (scatters_through(at.m)) {
+      ray.origin = offset_origin(at.position, lit_side(at.m, ray.direction), zero());
+    }
+    to.add(ray, hn::And(lanes, hn::And(lit, carries)));
   }
 
   const ReferenceBounceJob& job_;

@@ -35,6 +35,7 @@ class PathScatter {
     Onward onward = reflected(m, lobes, pick, u);
     if constexpr (Surface::layered) {
       if (transmits_) pass(s, m, boundary, lobes, pick, u, pixel, path, onward);
+      if (scatters_through(m)) scatter_behind(m, boundary, lobes, pick, u, onward);
     }
     path.throughput = path.throughput * onward.weight;
     path.density = onward.density;
@@ -79,6 +80,27 @@ class PathScatter {
     to.density = select(to.specular, by_chance, by_cosine);
     to.roughness = select(to.specular, drawn.roughness, one());
     return to;
+  }
+
+  /// Of the paths that are scattered to the other side.
+  HWY_INLINE void scatter_behind(const Material& m, const BoundaryLanes& boundary,
+                                 const LobeProbabilities& lobes, Float pick, const Float2& u,
+                                 Onward& onward) const {
+    const Float first = lobes.specular + lobes.through;
+    const Mask drawn = hn::And(hn::Ge(pick, first), hn::Lt(pick, first + lobes.behind));
+    const Mask lanes = hn::AndNot(boundary.leaving, drawn);
+    if (none(lanes)) return;
+    const Float3 direction = sample_cosine(-m.normal, u.x, u.y);
+    const Mask open = hn::Lt(dot(direction, m.geometric), zero());
+    const Float3 share =
+        keep(open, transmitted_albedo(m) * (one() / at_least(lobes.behind, 1e-6f)));
+    const Float cosine = at_least(hn::Neg(dot(direction, m.normal)), 0.0f);
+    onward.direction = select(lanes, direction, onward.direction);
+    onward.weight = select(lanes, share, onward.weight);
+    onward.density = select(lanes, lobes.behind * cosine_density(cosine), onward.density);
+    onward.roughness = select(lanes, one(), onward.roughness);
+    onward.specular = hn::AndNot(lanes, onward.specular);
+    onward.turned = hn::Or(onward.turned, lanes);
   }
 
   /// Of the paths whose light passes the surface, or comes from within a volume.

@@ -197,7 +197,7 @@ class PathVertices {
       lights_.add_emissive(vertex, ray, width, spread, samples, to.emissive);
     }
     ray.direction = scatter_.scatter(s, m, boundary, width, pixel, path);
-    if (job_.transmits) {
+    if (job_.transmits || scatters_through(m)) {
       const Mask behind = hn::Lt(dot(ray.direction, s.geometric), zero());
       ray.origin = select(behind, offset_origin(s.position, -s.geometric, zero()), ray.origin);
     }
@@ -211,8 +211,8 @@ class PathVertices {
     if constexpr (Surface::layered) {
       if (none(leaving)) return m;
       const Mask others = hn::Not(leaving);
-      for (Float3* const part :
-           {&m.f0, &m.f90_minus_f0, &m.specular_albedo, &m.sheen, &m.sheen_albedo}) {
+      for (Float3* const part : {&m.f0, &m.f90_minus_f0, &m.specular_albedo, &m.diffuse_transmitted,
+                                 &m.sheen, &m.sheen_albedo}) {
         *part = keep(others, *part);
       }
       m.coat_f0 = hn::IfThenElseZero(others, m.coat_f0);

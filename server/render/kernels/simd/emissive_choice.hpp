@@ -10,6 +10,7 @@
 
 #include "render/kernels/simd/lanes.hpp"
 #include "render/kernels/simd/rays.hpp"
+#include "render/kernels/simd/two_sided_light.hpp"
 #include "shaders/shared/emissive.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -40,10 +41,12 @@ struct EmissiveChoice {
 };
 
 /// `points`: shared::emissive_points of them. `start` in [0, 1) says which are weighed; `pick`
-/// decides.
+/// decides. `sides`: factors on the light of both sides of receivers; none: they get light from one
+/// only.
 HWY_INLINE EmissiveChoice choose_emissive(const shared::EmissivePoint* points,
                                           const Float3& position, const Float3& normal,
-                                          const Float3& geometric, Float start, Float pick) {
+                                          const Float3& geometric, Float start, Float pick,
+                                          const SideShares* sides = nullptr) {
   static_assert(sizeof(shared::EmissivePoint) == 48);
   constexpr auto count = static_cast<int>(shared::emissive_points);
   constexpr int step = count / static_cast<int>(shared::emissive_candidates);
@@ -60,11 +63,18 @@ HWY_INLINE EmissiveChoice choose_emissive(const shared::EmissivePoint* points,
     const Float3 direction = way * reciprocal_sqrt(squared);
     Float there = hn::Neg(dot(Float3{facing.x, facing.y, facing.z}, direction));
     there = select(hn::Gt(facing.w, zero()), hn::Abs(there), there);
-    const Float here = cosine_density(dot(normal, direction));
-    const Float least = hn::Min(hn::Min(here, there), dot(geometric, direction));
+    Float here = cosine_density(dot(normal, direction)), above = dot(geometric, direction);
+    Mask behind = hn::Lt(one(), zero());
+    if (sides) {
+      behind = hn::And(hn::Lt(above, zero()), hn::Gt(largest_of(sides->behind), zero()));
+      here = select(behind, hn::Neg(here), here);
+      above = select(behind, hn::Neg(above), above);
+    }
+    const Float least = hn::Min(hn::Min(here, there), above);
     const Mask seen = hn::And(hn::Gt(place.w, zero()), hn::Gt(least, zero()));
     if (none(seen)) continue;
-    const Float3 light = point.triple(8) * emissive_share(place.w, here, there, squared);
+    Float3 light = point.triple(8) * emissive_share(place.w, here, there, squared);
+    if (sides) light = light * select(behind, sides->behind, sides->near);
     const Float weight = hn::IfThenElseZero(seen, luminance(light));
     const Mask shines = hn::Gt(weight, zero());
     choice.total = choice.total + weight;

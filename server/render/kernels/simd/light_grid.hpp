@@ -160,7 +160,7 @@ class CellLights {
     const Quad<V> place = four(0);
     const Triple<V> to_light = Triple<V>{place.x, place.y, place.z} - position_;
     const V squared = hn::Max(dot(to_light, to_light), set(1e-8f));
-    M lit = hn::And(requested, hn::Gt(dot(m_.geometric, to_light), zero));
+    M lit = hn::And(requested, is_lit_from(m_, to_light));
     if (hn::AllFalse(d_, lit)) return lit;
     const Quad<V> facing = four(4);
     const V range = facing.w;
@@ -187,7 +187,7 @@ class CellLights {
     const Quad<V> color = four(8);
     seen.spread = color.w * inverse;
     const Triple<V> sent = Triple<V>{color.x, color.y, color.z} * seen.way.attenuation *
-                           shade_light(d_, m_, seen.way.direction);
+                           shade_light_of_side(d_, m_, seen.way.direction);
     seen.sent = {hn::IfThenElseZero(lit, sent.x), hn::IfThenElseZero(lit, sent.y),
                  hn::IfThenElseZero(lit, sent.z)};
     return lit;

@@ -78,9 +78,9 @@ HWY_INLINE hn::Mask<D> light_contribution(D d, const shared::Light& light, const
     radiance = area_contribution(d, light, ltc, m, position);
   } else {
     s = light_at(d, light, position);
-    lit = hn::And(lit, hn::Gt(dot(m.geometric, s.direction), hn::Zero(d)));
+    lit = hn::And(lit, is_lit_from(m, s.direction));
     if (hn::AllFalse(d, lit)) return lit;
-    radiance = splat(d, light.color) * s.attenuation * shade_light(d, m, s.direction);
+    radiance = splat(d, light.color) * s.attenuation * shade_light_of_side(d, m, s.direction);
   }
   radiance = {hn::IfThenElseZero(lit, radiance.x), hn::IfThenElseZero(lit, radiance.y),
               hn::IfThenElseZero(lit, radiance.z)};
@@ -191,9 +191,9 @@ HWY_NOINLINE Mask sample_lit_point(const shared::Light& light, const Material& m
     };
     const Float2 at{step(u.x, 0.7548776662f), step(u.y, 0.5698402910f)};
     const AreaSample<Float> s = sample_area(light, position, at);
-    const Mask above = hn::Gt(dot(m.geometric, s.direction), zero());
-    const Float3 sent = numbers(light.color) * s.solid_angle * shade_light(tag, m, s.direction);
-    const Float weight = hn::IfThenElseZero(above, luminance(sent));
+    const Float3 sent =
+        numbers(light.color) * s.solid_angle * shade_light_of_side(tag, m, s.direction);
+    const Float weight = hn::IfThenElseZero(is_lit_from(m, s.direction), luminance(sent));
     const Mask shines = hn::Gt(weight, zero());
     total = total + hn::IfThenElseZero(shines, weight);
     const Float probability = weight / select(shines, total, one());
@@ -207,8 +207,9 @@ HWY_NOINLINE Mask sample_lit_point(const shared::Light& light, const Material& m
 }
 
 /// Toward a point of the chosen light: light_ray() of light_choice.glsl, its direction and length.
-/// `areas`: numbers of the lights that have an area, and of any others.
-/// @return where a point is seen, of `requested`
+/// `areas`: numbers of the lights that have an area, and of any others. Where a point is seen, the
+/// ray begins at lit_side() of its direction.
+/// @return where that is, of `requested`
 template <class Material, class Numbers>
 HWY_INLINE Mask aim(std::span<const shared::Light> lights, const Numbers& areas,
                     const LightChoice& choice, const Material& m, const Float3& position,
@@ -220,6 +221,7 @@ HWY_INLINE Mask aim(std::span<const shared::Light> lights, const Numbers& areas,
       normalized(multiply_add(tangent, disk.x * choice.spread,
                               multiply_add(bitangent, disk.y * choice.spread, choice.direction)));
   Float distance = choice.distance;
+  Float3 middle = choice.direction;
   requested = hn::And(requested, hn::Gt(choice.total, zero()));
   if (choice.areas) {
     for (const std::uint32_t i : areas) {
@@ -231,6 +233,7 @@ HWY_INLINE Mask aim(std::span<const shared::Light> lights, const Numbers& areas,
       Float away = distance;
       const Mask seen = sample_lit_point(lights[i], m, position, u, pick, direction, away);
       ray.direction = select(chosen, direction, ray.direction);
+      middle = select(chosen, direction, middle);
       distance = select(chosen, away, distance);
       requested = hn::AndNot(hn::AndNot(seen, chosen), requested);
     }
@@ -238,7 +241,7 @@ HWY_INLINE Mask aim(std::span<const shared::Light> lights, const Numbers& areas,
   // Geometry may lie where a light does and show it: it must not occlude itself.
   ray.t_max = distance * number(0.999f);
   // The light's disk may reach below the horizon, where nothing of it is seen.
-  return hn::And(requested, hn::Gt(dot(ray.direction, m.geometric), zero()));
+  return hn::And(requested, hn::Gt(dot(ray.direction, lit_side(m, middle)), zero()));
 }
 template <class Material>
 HWY_INLINE Mask aim(std::span<const shared::Light> lights, const LightChoice& choice,

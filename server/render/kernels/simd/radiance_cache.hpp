@@ -26,13 +26,14 @@ struct CachedLanes {
   Mask known;
 };
 
-/// Where rays of length `t` have met `s`. `order`: of the rays, one for each.
+/// Where rays of length `t` have met `s`, on the side of `normal`. `order`: of the rays, one for
+/// each.
 template <class Surface>
-HWY_INLINE CachedLanes cached_light(const CacheReader& cache, const Surface& s, Float t,
-                                    Integer order, Mask requested,
+HWY_INLINE CachedLanes cached_light(const CacheReader& cache, const Surface& s,
+                                    const Float3& normal, Float t, Integer order, Mask requested,
                                     std::vector<CacheTouch>& touches) {
-  const StoredTriples positions(s.position), normals(s.geometric);
-  const std::uint64_t backs = mask_bits(hn::Lt(dot(s.front, s.geometric), zero()));
+  const StoredTriples positions(s.position), normals(normal);
+  const std::uint64_t backs = mask_bits(hn::Lt(dot(s.front, normal), zero()));
   const LaneIndices<Tag> orders(order);
   HWY_ALIGN std::array<float, hn::MaxLanes(Tag())> lengths;
   hn::Store(t, tag, lengths.data());
@@ -110,14 +111,22 @@ class GatheredLight {
     const Mask unlit = hn::And(hit.met, s.has(shared::material_unlit));
     const Mask probes = hn::Gt(ray.user.x, zero());
     const Mask lit = hn::AndNot(hn::Or(unlit, probes), hit.met);
-    const CachedLanes cached = cached_light(cache_, s, hit.t, ray.pixel, lit, touches);
+    const CachedLanes cached = cached_light(cache_, s, s.geometric, hit.t, ray.pixel, lit, touches);
     Float3 sent = (wide_albedo(m) + m.specular_albedo) * (cached.direct + cached.indirect);
+    Mask found = cached.known;
+    const Mask through = hn::And(lit, hn::Gt(largest_of(transmitted_albedo(m)), zero()));
+    if (scatters_through(m) && !none(through)) {
+      const CachedLanes behind =
+          cached_light(cache_, s, -s.geometric, hit.t, ray.pixel, through, touches);
+      sent = sent + keep(through, transmitted_albedo(m) * (behind.direct + behind.indirect));
+      found = hn::AndNot(hn::AndNot(behind.known, through), found);
+    }
     sent = select(unlit, s.base_color, sent);
     if (enabled(shared::frame_emissive)) sent = sent + emission(ray, hit, s, lit);
     if constexpr (Surface::layered) sent = sent * (one() / (one() - s.passing));
     sent = select(is_bad(sent), numbers(0.0f), sent);
     light = select(hit.met, sent, light);
-    const Mask known = hn::AndNot(hn::AndNot(cached.known, lit), requested);
+    const Mask known = hn::AndNot(hn::AndNot(found, lit), requested);
     return {light, known, hit.met, s.position, s.geometric};
   }
 

@@ -52,7 +52,8 @@ HWY_INLINE auto gbuffer_material(const Job& job, const PixelLanes& pixels, const
   const Float3 geometric = octahedral_decode(encoded.z, encoded.w);
   if constexpr (layered) {
     Float roughness;
-    const auto layer = unpack_layer(tag, gathered4(job.layers, pixels), normal, roughness);
+    const auto layer =
+        unpack_layer(tag, gathered4(job.layers, pixels), normal, packed.w, roughness);
     return make_material(tag, color, packed.y, roughness, normal, geometric, eye, tables, layer);
   } else {
     return make_material(tag, color, packed.y, packed.x, normal, geometric, eye, tables.split_sum);

@@ -22,13 +22,16 @@ void gather(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
   const auto rays =
       declare_rays(plan, "indirect", plan.extent().width * height, tracing::RayKind::reflection);
   begin_rays(plan, in, "indirect", rays);
-  plan.pass("indirect.rays", in.program(shaders::indirect_rays))
+  plan.pass("indirect.rays", in.program(shaders::indirect_rays, in.moving.features()))
       .bind<kernels::IndirectRaysBindings>({.normals = gbuffer.normals,
                                             .motion = gbuffer.motion,
                                             .rays = ray_sink(rays),
                                             .planned = planned.value_or(gbuffer.instance),
                                             .radiance = radiance,
-                                            .guide = cache.guide})
+                                            .guide = cache.guide,
+                                            .base_color = gbuffer.base_color,
+                                            .surface = gbuffer.surface,
+                                            .layers = gbuffer.layers})
       .constants([in, has_plan = planned.has_value()] {
         const shared::RadianceCacheConstants cells = cache_constants(in);
         return kernels::IndirectRaysConstants{has_plan && leaves_samples_out(in), cells.guided,
@@ -36,7 +39,9 @@ void gather(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
       })
       .dispatch(gpu::each_pixel())
       .host([in, rows](const kernels::IndirectRaysJob::Pass& pass) {
-        kernels::indirect_rays({pass, in.constants, rows});
+        kernels::indirect_rays({pass, in.constants,
+                                kernels::scatters_through(in.moving.features_without_emission()),
+                                in.lobe_tables(), rows});
       });
   const auto hits = plan.buffer("indirect.hits", sizeof(shared::Hit) * rays.capacity, storage,
                                 gpu::Memory::device);

@@ -52,11 +52,16 @@ void add_emissive_light(gpu::FramePlan& plan, const FrameInputs& in, const GBuff
                                               .motion = gbuffer.motion,
                                               .radiance = radiance,
                                               .points = points,
-                                              .rays = ray_sink(rays)})
+                                              .rays = ray_sink(rays),
+                                              .base_color = gbuffer.base_color,
+                                              .surface = gbuffer.surface,
+                                              .layers = gbuffer.layers})
       .dispatch(gpu::each_pixel())
       .when([in] { return samples_emissive(in); })
       .host([in, rows](const kernels::IndirectLightsJob::Pass& pass) {
-        kernels::indirect_lights({pass, in.constants, rows});
+        kernels::indirect_lights({pass, in.constants,
+                                  kernels::scatters_through(in.moving.features_without_emission()),
+                                  in.lobe_tables(), rows});
       });
   add_unoccluded_light(plan, in, "indirect.lights", rays, radiance);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "render/kernels/common/tile.hpp"
 #include "render/passes/gbuffer/gbuffer.hpp"
 
 namespace heliograph::render {

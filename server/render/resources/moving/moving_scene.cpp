@@ -9,6 +9,7 @@
 #include "render/resources/lights/light_table.hpp"
 #include "render/resources/moving/plain_material.hpp"
 #include "render/resources/moving/writable_table.hpp"
+#include "scene/gltf/materials/layer_table.hpp"
 #include "scene/gltf/nodes/lights.hpp"
 
 namespace heliograph::render {
@@ -198,8 +199,8 @@ bool MovingScene::replace_materials(MaterialTables tables) {
     std::memcpy(changed_materials_->table.mapped(), materials.data(), materials.size_bytes());
   }
   bool rebuilds = write_layers(layers);
-  rebuilds |= update_layer_feature(materials);
   const MaterialTables now = material_tables();
+  rebuilds |= update_layer_features(now);
   if (device_.is_cpu()) changed_materials_->host = resources_->make_host_materials(now);
   auto& sets = changed_materials_->sets;
   if (sets && (rebuilds || !sets->write(now))) {
@@ -229,12 +230,15 @@ bool MovingScene::write_layers(std::span<const shared::MaterialLayer> layers) {
   return !fits;
 }
 
-/// Shaders without layers know none. @return whether the feature changed
-bool MovingScene::update_layer_feature(std::span<const shared::Material> materials) {
-  const bool layered = (resources_->features & shared::scene_layers) != 0 ||
-                       std::ranges::any_of(materials, &shared::Material::layer);
+/// Shaders without layers know none. @return whether the features changed
+bool MovingScene::update_layer_features(const MaterialTables& tables) {
+  constexpr std::uint32_t of_layers = shared::scene_layers | shared::scene_diffuse_transmits;
   const std::uint32_t before = features_;
-  features_ = (before & ~shared::scene_layers) | (layered ? shared::scene_layers : 0u);
+  features_ = (before & ~of_layers) | (resources_->features & of_layers);
+  if (std::ranges::any_of(tables.materials, &shared::Material::layer)) {
+    features_ |= shared::scene_layers;
+  }
+  if (scene::scatters_through(tables.layers)) features_ |= shared::scene_diffuse_transmits;
   return features_ != before;
 }
 

@@ -127,7 +127,7 @@ class MovingScene {
   MaterialTables material_tables() const;
   bool replace_materials(MaterialTables tables);
   bool write_layers(std::span<const shared::MaterialLayer> layers);
-  bool update_layer_feature(std::span<const shared::Material> materials);
+  bool update_layer_features(const MaterialTables& tables);
   bool remake_emissive();
   std::vector<glm::mat4> shining_worlds() const;
   void list_shown_draws();

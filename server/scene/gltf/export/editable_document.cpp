@@ -38,8 +38,17 @@ void EditableDocument::append_root(Json node) {
 }
 
 void EditableDocument::use(const std::string& extension) {
-  Json& used = list("extensionsUsed");
-  if (std::ranges::find(used, Json(extension)) == used.end()) used.push_back(extension);
+  list_extension("extensionsUsed", extension);
+}
+
+void EditableDocument::require(const std::string& extension) {
+  use(extension);
+  list_extension("extensionsRequired", extension);
+}
+
+void EditableDocument::list_extension(const char* where, const std::string& extension) {
+  Json& listed = list(where);
+  if (std::ranges::find(listed, Json(extension)) == listed.end()) listed.push_back(extension);
 }
 
 EditableDocument::Json& EditableDocument::extras(Json& object, const std::string& place) {

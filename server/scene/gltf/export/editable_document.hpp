@@ -30,11 +30,15 @@ class EditableDocument {
   void append_root(Json node);
   /// Lists an extension as used.
   void use(const std::string& extension);
+  /// Lists one also as required: without it the document cannot be read (glTF 3.12).
+  void require(const std::string& extension);
   /// The "extras" of an object, which may be of any type: another one gives way, with a warning.
   Json& extras(Json& object, const std::string& place);
   void warn(std::string text) { warnings_.add(std::move(text)); }
 
  private:
+  void list_extension(const char* where, const std::string& extension);
+
   Json root_;
   const std::optional<std::size_t> shown_;
   Warnings& warnings_;

@@ -142,6 +142,10 @@ void write_extensions(EditableDocument& document, json& material, const Material
       {{"anisotropyStrength", now.anisotropy}, {"anisotropyRotation", now.anisotropy_rotation}});
   write_extension(document, material, "KHR_materials_dispersion", now.dispersion > 0.0f,
                   {{"dispersion", now.dispersion}});
+  write_extension(document, material, "KHR_materials_diffuse_transmission",
+                  now.diffuse_transmission > 0.0f,
+                  {{"diffuseTransmissionFactor", now.diffuse_transmission},
+                   {"diffuseTransmissionColorFactor", triple(now.diffuse_transmission_color)}});
   write_extension(document, material, "KHR_materials_transmission", now.transmission > 0.0f,
                   {{"transmissionFactor", now.transmission}});
   write_volume(document, material, now);

@@ -92,7 +92,9 @@ class TextureWriter {
       texture["source"] = image;
     } else {
       texture["extensions"][extension]["source"] = image;
-      document_.use(extension);
+      // There is no source for readers that lack the extension, which therefore is required
+      // (EXT_texture_webp, KHR_texture_basisu).
+      document_.require(extension);
     }
     return document_.append("textures", std::move(texture));
   }

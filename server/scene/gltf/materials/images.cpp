@@ -23,13 +23,14 @@ using ImageBytes = std::vector<std::uint8_t>;
                     reason);
 }
 
-/// Runs `task` for an image; returns why it failed, where assets are not strict.
+/// Runs `task` for an image; returns why it failed, where neither it is required nor assets are
+/// strict.
 template <typename Task>
 std::string try_image(const ImageSource& source, const ImportLimits& limits, const Task& task) {
   try {
     task();
   } catch (const ImportError& error) {
-    if (limits.strict_assets) refuse(source, error.what());
+    if (limits.strict_assets || source.required) refuse(source, error.what());
     return source.path + (source.name.empty() ? "" : " " + in_quotes(source.name)) + " " +
            error.what();
   }
@@ -130,6 +131,7 @@ std::uint32_t kept_side(std::span<const ImageSize> sizes, const KeptTextures& ke
 Image white_texel(const ImageSource& source, bool srgb) {
   Image image;
   image.name = source.name;
+  image.damaged = true;
   image.width = image.height = 1;
   image.srgb = srgb;
   image.pixels.assign(4, 255);

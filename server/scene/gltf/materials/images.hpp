@@ -23,6 +23,7 @@ struct ImageSource {
   std::shared_ptr<const std::vector<std::uint8_t>> file;
   std::span<const std::uint8_t> bytes;  // of `file`
   std::string problem;                  // why there are no bytes
+  bool required = false;                // damage refuses the scene, as with strict assets
 };
 
 /// An image that is computed from two others of the specular-glossiness model.
@@ -52,7 +53,7 @@ std::vector<ImageSource> read_image_sources(GltfFile& file, const ImportLimits& 
                                             const std::stop_token& stop);
 
 /// The images of all uses. Those that are missing or damaged are one white texel, unless assets are
-/// strict.
+/// strict or the image is required.
 struct DecodedImages {
   std::vector<Image> images;
   std::vector<std::string> problems;  // per image; empty: none
@@ -66,8 +67,8 @@ struct KeptLevels {
 };
 
 /// Decodes every use, with mip levels, in parallel. `decoded` is called after each, on any thread.
-/// @throws ImportError when a limit is exceeded, and with strict assets when an image is damaged;
-/// LoadCancelled
+/// @throws ImportError when a limit is exceeded, or an image is damaged that is required or with
+/// strict assets; LoadCancelled
 DecodedImages decode_images(std::span<const ImageSource> sources, std::span<const ImageUse> uses,
                             const KeptLevels& kept, const ImportLimits& limits,
                             const std::stop_token& stop, const std::function<void()>& decoded);

@@ -81,11 +81,13 @@ shared::MaterialLayer plain_layer() {
   layer.coat_normal_scale = 1.0f;
   layer.film_ior = 1.0f;
   layer.grain_x = 1.0f;
+  layer.diffuse_tint = glm::vec3(1.0f);
   for (shared::TextureSlot* slot :
        {&layer.specular_texture, &layer.specular_color_texture, &layer.coat_texture,
         &layer.coat_roughness_texture, &layer.coat_normal_texture, &layer.sheen_color_texture,
         &layer.sheen_roughness_texture, &layer.transmission_texture, &layer.thickness_texture,
-        &layer.iridescence_texture, &layer.film_texture, &layer.anisotropy_texture}) {
+        &layer.iridescence_texture, &layer.film_texture, &layer.anisotropy_texture,
+        &layer.diffuse_transmission_texture, &layer.diffuse_tint_texture}) {
     *slot = no_texture_slot();
   }
   return layer;
@@ -93,6 +95,11 @@ shared::MaterialLayer plain_layer() {
 
 bool adds_nothing(const shared::MaterialLayer& layer) {
   return same(layer, plain_layer());
+}
+
+bool scatters_through(std::span<const shared::MaterialLayer> layers) {
+  return std::ranges::any_of(
+      layers, [](const shared::MaterialLayer& layer) { return layer.diffuse_transmission > 0.0f; });
 }
 
 shared::MaterialLayer layer_of(const shared::Material& material, const MaterialLayers& from) {
@@ -141,6 +148,15 @@ shared::MaterialLayer layer_of(const shared::Material& material, const MaterialL
     layer.grain_x = std::cos(from.anisotropy_rotation);
     layer.grain_y = std::sin(from.anisotropy_rotation);
     layer.anisotropy_texture = from.anisotropy_texture;
+  }
+  if (from.diffuse_transmission > 0.0f) {
+    layer.diffuse_transmission = from.diffuse_transmission;
+    layer.diffuse_tint = from.diffuse_transmission_color;
+    layer.diffuse_transmission_texture = from.diffuse_transmission_texture;
+    layer.diffuse_tint_texture = from.diffuse_transmission_color_texture;
+    // A wall, however thick: what it lets through is what the whole thickness leaves.
+    layer.absorption = absorption(from);
+    layer.thickness_texture = from.thickness_texture;
   }
   return layer;
 }

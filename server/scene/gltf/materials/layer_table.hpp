@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "scene/scene.hpp"
 
 namespace heliograph::scene {
@@ -9,7 +11,12 @@ shared::MaterialLayer plain_layer();
 /// Whether a material with this layer looks like one without extensions.
 bool adds_nothing(const shared::MaterialLayer& layer);
 
-/// The layer of a material with these extensions. With an alpha mask it transmits nothing.
+/// Whether any of them scatters light to the other side of its surfaces
+/// (KHR_materials_diffuse_transmission).
+bool scatters_through(std::span<const shared::MaterialLayer> layers);
+
+/// The layer of a material with these extensions. With an alpha mask it transmits nothing but
+/// diffuse light.
 shared::MaterialLayer layer_of(const shared::Material& material, const MaterialLayers& from);
 
 /// Creates scene.layers from the materials' extensions, without duplicates, and links the materials

@@ -21,6 +21,7 @@ class LayerReader {
     read_dispersion(layers);
     read_iridescence(layers);
     read_anisotropy(layers);
+    read_diffuse_transmission(layers);
     return layers;
   }
 
@@ -94,6 +95,16 @@ class LayerReader {
     layers.anisotropy = json->number("anisotropyStrength", 0.0f);
     layers.anisotropy_rotation = json->number("anisotropyRotation", 0.0f);
     layers.anisotropy_texture = texture(*json, "anisotropyTexture");
+  }
+
+  void read_diffuse_transmission(MaterialLayers& layers) {
+    const auto json = find("KHR_materials_diffuse_transmission");
+    if (!json) return;
+    layers.diffuse_transmission = json->number("diffuseTransmissionFactor", 0.0f);
+    layers.diffuse_transmission_color = color(*json, "diffuseTransmissionColorFactor", 1.0f);
+    layers.diffuse_transmission_texture = texture(*json, "diffuseTransmissionTexture");
+    layers.diffuse_transmission_color_texture =
+        texture(*json, "diffuseTransmissionColorTexture", true);
   }
 
   std::optional<ExtensionValue> find(const std::string& name) const {

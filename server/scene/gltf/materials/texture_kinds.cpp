@@ -13,6 +13,7 @@ constexpr const char* specular_owner = "KHR_materials_specular";
 constexpr const char* coat_owner = "KHR_materials_clearcoat";
 constexpr const char* sheen_owner = "KHR_materials_sheen";
 constexpr const char* iridescence_owner = "KHR_materials_iridescence";
+constexpr const char* diffuse_owner = "KHR_materials_diffuse_transmission";
 
 constexpr TextureKind base_kind(std::string_view name, bool srgb, const char* owner,
                                 const char* member, shared::TextureSlot Base::*slot) {
@@ -52,6 +53,10 @@ constexpr TextureKind known_kinds[] = {
                &Layers::iridescence_thickness_texture),
     layer_kind("anisotropy", false, "KHR_materials_anisotropy", "anisotropyTexture",
                &Layers::anisotropy_texture),
+    layer_kind("diffuse_transmission", false, diffuse_owner, "diffuseTransmissionTexture",
+               &Layers::diffuse_transmission_texture),
+    layer_kind("diffuse_transmission_color", true, diffuse_owner, "diffuseTransmissionColorTexture",
+               &Layers::diffuse_transmission_color_texture),
 };
 
 }  // namespace

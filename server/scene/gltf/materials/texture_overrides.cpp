@@ -86,8 +86,12 @@ class Overriding {
         source_of_file_.try_emplace(by.image, static_cast<std::uint32_t>(images_.size()));
     if (!is_new) return known->second;
     files_.push_back(examine_file(by.image));
-    ImageSource source{
-        .path = "the image", .name = by.name, .file = {}, .bytes = {}, .problem = {}};
+    ImageSource source{.path = "the image",
+                       .name = by.name,
+                       .file = {},
+                       .bytes = {},
+                       .problem = {},
+                       .required = true};
     source.file = std::make_shared<const std::vector<std::uint8_t>>(
         read_regular_file(by.image, limits_.file_bytes, "the image " + in_quotes(by.name), stop_));
     source.bytes = *source.file;

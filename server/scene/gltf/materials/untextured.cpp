@@ -17,6 +17,7 @@ void drop_textures(shared::Material& material, MaterialLayers& layers) {
     layers.transmission = 0.0f;
     material.passing = 0.0f;
   }
+  if (is_textured(layers.diffuse_transmission_texture)) layers.diffuse_transmission = 0.0f;
   for (const TextureKind& kind : texture_kinds()) kind.of(material, layers) = no_texture_slot();
 }
 

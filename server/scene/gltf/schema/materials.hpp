@@ -90,6 +90,14 @@ inline constexpr Member clearcoat_members[] = {
 };
 inline constexpr ObjectType clearcoat = {clearcoat_members};
 
+inline constexpr Member diffuse_transmission_members[] = {
+    number("diffuseTransmissionFactor").range(0, 1),
+    object("diffuseTransmissionTexture", slot),
+    numbers("diffuseTransmissionColorFactor", 3).range(0, 1),
+    object("diffuseTransmissionColorTexture", slot),
+};
+inline constexpr ObjectType diffuse_transmission = {diffuse_transmission_members};
+
 inline constexpr Member dispersion_members[] = {number("dispersion").at_least(0)};
 inline constexpr ObjectType dispersion = {dispersion_members};
 
@@ -144,6 +152,7 @@ inline constexpr ObjectType unlit = {};
 inline constexpr Extension material_extensions[] = {
     {"KHR_materials_anisotropy", &anisotropy},
     {"KHR_materials_clearcoat", &clearcoat},
+    {"KHR_materials_diffuse_transmission", &diffuse_transmission},
     {"KHR_materials_dispersion", &dispersion},
     {"KHR_materials_emissive_strength", &emissive_strength},
     {"KHR_materials_ior", &ior},

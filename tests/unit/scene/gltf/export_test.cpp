@@ -252,6 +252,8 @@ TEST(GlbExport, FactorsOfExtensionsAreWrittenWhereTheyDoSomething) {
   layers.iridescence_thickness_maximum = 512.0f;
   layers.anisotropy = 0.375f;
   layers.anisotropy_rotation = -1.1f;
+  layers.diffuse_transmission = 0.625f;
+  layers.diffuse_transmission_color = {0.25f, 1.0f, 0.5f};
   exported.changes.extensions = {layers};
   exported.write();
   ASSERT_FALSE(exported.after.material_layers.empty());
@@ -264,6 +266,8 @@ TEST(GlbExport, FactorsOfExtensionsAreWrittenWhereTheyDoSomething) {
   EXPECT_EQ(after.iridescence_thickness_maximum, 512.0f);
   EXPECT_EQ(after.anisotropy, 0.375f);
   EXPECT_EQ(after.anisotropy_rotation, -1.1f);
+  EXPECT_EQ(after.diffuse_transmission, 0.625f);
+  EXPECT_EQ(after.diffuse_transmission_color, layers.diffuse_transmission_color);
   EXPECT_EQ(exported.after.materials[0].ior, 1.3f);
   const json extensions = exported.document().at("materials")[0].at("extensions");
   EXPECT_FALSE(extensions.contains("KHR_materials_volume"));

@@ -110,10 +110,10 @@ TEST(Materials, OutOfRangeFactorsAreClampedWithWarning) {
 
 TEST(Materials, WarningNamesUnsupportedExtension) {
   GltfBuilder builder = triangle();
-  builder.json["extensionsUsed"] = {"KHR_materials_diffuse_transmission"};
+  builder.json["extensionsUsed"] = {"KHR_materials_subsurface"};
   const Scene scene = builder.import();
   ASSERT_EQ(scene.warnings.size(), 1u);
-  EXPECT_NE(scene.warnings[0].find("KHR_materials_diffuse_transmission"), std::string::npos);
+  EXPECT_NE(scene.warnings[0].find("KHR_materials_subsurface"), std::string::npos);
 }
 
 TEST(Materials, LayersAreReadAndApproximationIsWarned) {

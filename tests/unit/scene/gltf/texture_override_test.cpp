@@ -48,6 +48,9 @@ class Overridden {
   Scene import(std::vector<TextureOverride> textures) const {
     return import_gltf(file_, strict_limits, {.textures = std::move(textures)});
   }
+  Scene import_leniently(std::vector<TextureOverride> textures) const {
+    return import_gltf(file_, {}, {.textures = std::move(textures)});
+  }
   /// The export of the scene, imported where there is no other file.
   Scene exported(const Scene& scene) {
     std::ostringstream out;
@@ -138,6 +141,28 @@ TEST(TextureOverrides, AFileThatIsNoImageRefusesTheScene) {
   EXPECT_THROW(overridden.import({{"paint", "normal", "gone", "/nowhere/gone.png"}}), ImportError);
 }
 
+TEST(TextureOverrides, ADamagedImageRefusesTheSceneThoughThoseOfTheFileMayBeDamaged) {
+  Overridden overridden;
+  const Bytes cut(green.begin(), green.end() - 20);
+  const TextureOverride damaged = overridden.with("emissive", "moss.png", cut);
+  try {
+    overridden.import_leniently({damaged});
+    FAIL() << "the image is shown as one texel";
+  } catch (const ImportError& refusal) {
+    EXPECT_NE(std::string(refusal.what()).find("\"moss.png\" is a damaged PNG"), std::string::npos)
+        << refusal.what();
+  }
+}
+
+TEST(TextureOverrides, ADamagedImageOfTheFileIsKnownAsSuch) {
+  GltfBuilder builder = painted();
+  const std::uint32_t damaged = builder.add_image(Bytes(green.begin(), green.end() - 20));
+  builder.json["textures"][1]["source"] = damaged;
+  const Scene scene = Overridden(builder).import_leniently({});
+  EXPECT_TRUE(image_of(scene, scene.materials[0].emissive_texture).damaged);
+  EXPECT_FALSE(image_of(scene, scene.materials[0].base_color_texture).damaged);
+}
+
 TEST(TextureOverrides, NamesOfSlotsAreUnique) {
   std::set<std::string_view> names;
   std::set<std::string> places;
@@ -167,6 +192,8 @@ TEST(TextureExport, ReplacedImagesAreEmbeddedAsTheyAre) {
   const json document = overridden.document();
   EXPECT_EQ(document["images"].back()["mimeType"], "image/webp");
   EXPECT_NE(document["extensionsUsed"].dump().find("EXT_texture_webp"), std::string::npos);
+  EXPECT_EQ(document["extensionsRequired"], json::array({"EXT_texture_webp"}))
+      << "its texture has no other source";
   EXPECT_NE(document["extensionsUsed"].dump().find("KHR_materials_sheen"), std::string::npos);
 }
 
@@ -177,6 +204,7 @@ TEST(TextureExport, AnImageOfTwoSlotsIsEmbeddedOnce) {
   second.slot = "occlusion";
   overridden.exported(overridden.import({first, second}));
   EXPECT_EQ(overridden.document()["images"].size(), 2u);
+  EXPECT_FALSE(overridden.document().contains("extensionsRequired")) << "PNG needs none";
 }
 
 TEST(TextureExport, MaterialsOfPrimitivesWithoutOneAreAdded) {

@@ -62,6 +62,10 @@ void add_materials(GltfBuilder& b) {
              {"anisotropyRotation", 1},
              {"anisotropyTexture", {{"index", 1}}}}},
            {"KHR_materials_dispersion", {{"dispersion", 0.5}}},
+           {"KHR_materials_diffuse_transmission",
+            {{"diffuseTransmissionFactor", 0.5},
+             {"diffuseTransmissionTexture", {{"index", 1}}},
+             {"diffuseTransmissionColorFactor", {0.5, 1, 0.5}}}},
            {"KHR_materials_transmission", {{"transmissionFactor", 0.5}}},
            {"KHR_materials_volume", {{"thicknessFactor", 1}, {"attenuationDistance", 1}}}}}});
   b.add("materials", {{"extensions", {{"KHR_materials_unlit", json::object()}}}});
@@ -211,13 +215,25 @@ void add_animation(GltfBuilder& b) {
 GltfBuilder rich_document() {
   GltfBuilder b;
   b.json["asset"]["minVersion"] = "2.0";
-  b.json["extensionsUsed"] = {
-      "KHR_lights_punctual",        "KHR_texture_transform",    "EXT_texture_webp",
-      "KHR_draco_mesh_compression", "EXT_meshopt_compression",  "EXT_mesh_gpu_instancing",
-      "KHR_materials_variants",     "KHR_materials_ior",        "KHR_materials_specular",
-      "KHR_materials_clearcoat",    "KHR_materials_sheen",      "KHR_materials_transmission",
-      "KHR_materials_volume",       "KHR_materials_unlit",      "KHR_materials_emissive_strength",
-      "KHR_materials_iridescence",  "KHR_materials_anisotropy", "KHR_materials_dispersion"};
+  b.json["extensionsUsed"] = {"KHR_lights_punctual",
+                              "KHR_texture_transform",
+                              "EXT_texture_webp",
+                              "KHR_draco_mesh_compression",
+                              "EXT_meshopt_compression",
+                              "EXT_mesh_gpu_instancing",
+                              "KHR_materials_variants",
+                              "KHR_materials_ior",
+                              "KHR_materials_specular",
+                              "KHR_materials_clearcoat",
+                              "KHR_materials_sheen",
+                              "KHR_materials_transmission",
+                              "KHR_materials_volume",
+                              "KHR_materials_unlit",
+                              "KHR_materials_emissive_strength",
+                              "KHR_materials_iridescence",
+                              "KHR_materials_anisotropy",
+                              "KHR_materials_dispersion",
+                              "KHR_materials_diffuse_transmission"};
   b.json["extensionsRequired"] = {"KHR_draco_mesh_compression", "EXT_meshopt_compression"};
   add_textures(b);
   add_materials(b);

@@ -105,6 +105,26 @@ TEST(MaterialEdits, TransmissionKeepsWhatRaysGoBy) {
   EXPECT_EQ(edits.device()->at(2).flags, scene->materials[2].flags);
 }
 
+TEST(MaterialEdits, AnyLitMaterialMayScatterLightToItsOtherSide) {
+  const auto scene = extended_scene();
+  MaterialEdits edits(scene);
+  const auto leaf = edits.patch(
+      {"leaf",
+       {.diffuse_transmission = {0.5f}, .diffuse_transmission_color = {Vec3{0.25f, 1, 0}}}});
+  ASSERT_TRUE(leaf);
+  EXPECT_EQ(leaf->changed,
+            (std::vector<std::string>{"diffuse_transmission", "diffuse_transmission_color"}));
+  EXPECT_EQ(layer_of_material(edits, 3).diffuse_transmission, 0.5f);
+  EXPECT_EQ(layer_of_material(edits, 3).diffuse_tint, glm::vec3(0.25f, 1.0f, 0.0f));
+  const auto sign = edits.patch({"sign", {.diffuse_transmission = {0.5f}}});
+  EXPECT_EQ(sign.error().path, "patch.diffuse_transmission");
+  protocol::EditDocument document;
+  edits.describe_edits(document);
+  MaterialEdits others(scene);
+  ASSERT_TRUE(others.apply(document));
+  EXPECT_EQ(edits.list(), others.list());
+}
+
 TEST(MaterialEdits, RefusesFactorsThatAMaterialCannotHave) {
   MaterialEdits edits(extended_scene());
   const auto refused = edits.patch({"paint", {.roughness = {0.1f}, .transmission = {0.5f}}});
@@ -128,6 +148,7 @@ TEST(MaterialEdits, RequestsHaveTheRangesOfGltf) {
   EXPECT_EQ(path_of(R"({"ior": 0, "specular_color": [2, 1, 1], "thickness": 3})"), "");
   EXPECT_EQ(path_of(R"({"clearcoat": 1.1})"), "patch.clearcoat");
   EXPECT_EQ(path_of(R"({"ior": 11})"), "patch.ior");
+  EXPECT_EQ(path_of(R"({"diffuse_transmission": 1.1})"), "patch.diffuse_transmission");
   EXPECT_EQ(path_of(R"({"attenuation_distance": -1})"), "patch.attenuation_distance");
   EXPECT_EQ(path_of(R"({"alpha_cutoff": 0.5})"), "patch.alpha_cutoff");
 }

@@ -56,6 +56,16 @@ TEST(TextureEdits, TexturesOfTheFileAreListedWithTheirSize) {
   EXPECT_FALSE(list.textures[0].image || list.textures[0].removed);
 }
 
+TEST(TextureEdits, ADamagedImageOfTheFileHasNoSize) {
+  const auto room = a_room();
+  room->images[0].damaged = true;
+  const protocol::TextureList list = list_textures(*room);
+  ASSERT_EQ(list.textures.size(), 1u);
+  EXPECT_EQ(list.textures[0].file_image, "planks");
+  EXPECT_EQ(list.textures[0].width, 0u);
+  EXPECT_EQ(list.textures[0].height, 0u);
+}
+
 TEST(TextureEdits, ReplacedAndRemovedOnesAreListedWithThoseOfTheFile) {
   auto floor = replaced(0, {"floor", "base_color", "", ""});
   floor.file_image = "planks";
@@ -119,6 +129,8 @@ TEST(TextureEdits, AnotherVariantKeepsCameraAndEdits) {
   session.scene().show({.name = "room", .scene = a_room(), .resources = nullptr}, "");
   ASSERT_TRUE(session.camera().set({.eye = protocol::Vec3{7, 8, 9}}, ""));
   ASSERT_TRUE(session.scene().patch_material({"wall", {.roughness = {0.25f}}}, ""));
+  const protocol::Section uncut{.planes = {}, .cap_color = {0.1f, 0.2f, 0.9f}};
+  ASSERT_TRUE(session.scene().set_section(uncut, ""));
   const auto room = a_room({replaced(1, {"wall", "normal", "bricks", "/bricks.png"})});
   ASSERT_TRUE(session.scene().show_variant({.name = "room", .scene = room, .resources = nullptr},
                                            std::nullopt, ""));
@@ -129,6 +141,7 @@ TEST(TextureEdits, AnotherVariantKeepsCameraAndEdits) {
   ASSERT_EQ(edits->edits.materials.size(), 1u);
   EXPECT_EQ(edits->edits.materials[0].patch.roughness.value, 0.25f);
   ASSERT_EQ(edits->edits.textures.size(), 1u);
+  EXPECT_EQ(session.scene().section()->cap_color, uncut.cap_color) << "of planes to come";
   session.scene().show({.name = "room", .scene = a_room(), .resources = nullptr}, "");
   EXPECT_NE(session.render_state().camera.eye, glm::vec3(7, 8, 9)) << "scene.load resets it";
 }

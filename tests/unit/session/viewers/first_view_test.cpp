@@ -108,6 +108,39 @@ TEST_F(FirstViewTest, LeavesTheSceneBeforeAsItWas) {
   EXPECT_EQ(session_.version(), version) << "there is none any more";
 }
 
+TEST_F(FirstViewTest, IsNotMovedByInputForTheSceneBefore) {
+  session_.scene().show(before_, "");
+  const std::uint32_t since = session_.camera().get()->scene_rev;
+  const protocol::CameraSet drag{.eye = {{4.0f, 0.0f, 0.0f}}, .seq = 9, .scene_rev = since};
+  ASSERT_TRUE(session_.camera().set(drag, "viewer"));
+  show_first();
+  const auto refused = session_.camera().set(drag, "viewer");
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::conflict);
+  EXPECT_EQ(refused.error().path, "scene_rev");
+  EXPECT_FALSE(session_.camera().orbit({.yaw = 40.0f, .scene_rev = since}, "viewer"));
+  EXPECT_EQ(session_.camera().get()->name, "hall camera");
+  const std::uint32_t first = session_.camera().get()->scene_rev;
+  EXPECT_TRUE(session_.camera().set({.eye = {{0.0f, 2.0f, 8.0f}}, .scene_rev = first}, "viewer"));
+  session_.scene().end_first_view();
+  EXPECT_EQ(session_.camera().get()->scene_rev, since) << "it is the same scene again";
+  EXPECT_FALSE(session_.camera().set({.eye = {{7.0f, 7.0f, 7.0f}}, .scene_rev = first}, "viewer"));
+  EXPECT_TRUE(session_.camera().set(drag, "viewer"));
+}
+
+TEST_F(FirstViewTest, IsTheSameSceneWhenItIsComplete) {
+  session_.scene().show(before_, "");
+  show_first();
+  const std::uint32_t first = session_.camera().get()->scene_rev;
+  session_.scene().show(whole_, "viewer");
+  EXPECT_EQ(session_.camera().get()->scene_rev, first) << "a drag goes on";
+  EXPECT_TRUE(session_.camera().set({.eye = {{1.0f, 2.0f, 7.0f}}, .scene_rev = first}, "viewer"));
+  session_.scene().show(before_, "viewer");
+  EXPECT_NE(session_.camera().get()->scene_rev, first);
+  EXPECT_FALSE(session_.camera().orbit({.yaw = 4.0f, .scene_rev = first}, "viewer"));
+  EXPECT_TRUE(session_.camera().orbit({.yaw = 4.0f}, "viewer")) << "programs need not say it";
+}
+
 TEST_F(FirstViewTest, IsNotSeenInLockstep) {
   session_.scene().show(before_, "");
   show_first();
@@ -123,7 +156,9 @@ TEST_F(FirstViewTest, IsNoPartOfACopy) {
   Session copy{{}, std::make_shared<WakeEvent>()};
   copy.copy_from(session_);
   EXPECT_EQ(copy.render_state().scene, before_.scene);
-  EXPECT_EQ(copy.camera().get()->name, "before camera");
+  const auto camera = copy.camera().get();
+  EXPECT_EQ(camera->name, "before camera");
+  EXPECT_EQ(camera->scene_rev, camera->rev) << "the copy counts its own revisions";
 }
 
 }  // namespace

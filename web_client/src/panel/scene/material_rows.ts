@@ -23,11 +23,16 @@ type NumberMember =
   | "iridescence_thickness_maximum"
   | "anisotropy"
   | "anisotropy_rotation"
+  | "diffuse_transmission"
   | "transmission"
   | "thickness"
   | "attenuation_distance"
   | "dispersion";
-type ColourMember = "specular_color" | "sheen_color" | "attenuation_color";
+type ColourMember =
+  | "specular_color"
+  | "sheen_color"
+  | "diffuse_transmission_color"
+  | "attenuation_color";
 
 type SliderParts = Parameters<typeof createSliderRow>[0];
 interface SliderFactor extends SliderParts {
@@ -98,6 +103,12 @@ export const factors: readonly (SliderFactor | ColourFactor)[] = [
     minimum: -3.15,
     maximum: 3.15,
   }),
+  slider(
+    "diffuse_transmission",
+    "Diffuse transmission",
+    "How much of the scattered light leaves at the other side, as of leaves, paper and lampshades.",
+  ),
+  { member: "diffuse_transmission_color", label: "Diffuse transmission colour" },
   slider("transmission", "Transmission", "Fraction of light that passes. Shadows keep the file's."),
   slider("thickness", "Thickness", "How much there is to pass below the surface; 0: a thin wall.", {
     unit: "metres",

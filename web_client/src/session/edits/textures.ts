@@ -1,6 +1,11 @@
 // The textures of the scene's materials, and the uploaded images that can take their place.
 
-import { ErrorCode, type Methods, type SceneInfo } from "heliograph/messages.ts";
+import {
+  type EditDocumentTextures,
+  ErrorCode,
+  type Methods,
+  type SceneInfo,
+} from "heliograph/messages.ts";
 import { RpcError, type RpcPeer } from "heliograph/rpc.ts";
 import { humanise } from "heliograph/settings_schema.ts";
 import { Signal } from "../../common/signal.ts";
@@ -50,7 +55,15 @@ export class Textures {
 
   /** The slot of a material; nothing where it is empty in the file and unchanged. */
   find(material: string, slot: string): Texture | undefined {
-    return this.list.value?.textures.find((one) => one.material === material && one.slot === slot);
+    return entryOf(this.list.value?.textures ?? [], { material, slot });
+  }
+
+  /** Slots that differ from the file; undefined while they are unknown. */
+  edits(): EditDocumentTextures[] | undefined {
+    return this.list.value?.textures.flatMap((texture) => {
+      const { material, slot, image, removed } = texture;
+      return image === undefined && !removed ? [] : [{ material, slot, image: image ?? null }];
+    });
   }
 
   /** Changes a slot, as a step of the history. Whether the server takes it. */
@@ -116,6 +129,37 @@ export class Textures {
       await this.read();
     }
   }
+}
+
+interface Slot {
+  material: string;
+  slot: string;
+}
+
+/** The parameters of textures.set that lead from these textures to the file with `edits`. */
+export function changesTowards(
+  textures: readonly Texture[],
+  edits: readonly EditDocumentTextures[],
+): (Slot & TextureChoice)[] {
+  const others = textures.filter((texture) => !entryOf(edits, texture));
+  const choices: [Slot, TextureChoice][] = [
+    ...edits.map((edit): [Slot, TextureChoice] => [
+      edit,
+      edit.image === null ? { removed: true } : { image: edit.image },
+    ]),
+    ...others.map((texture): [Slot, TextureChoice] => [texture, { image: null }]),
+  ];
+  return choices
+    .filter(([slot, choice]) => !sameChoice(choice, choiceOf(entryOf(textures, slot))))
+    .map(([{ material, slot }, choice]) => ({ material, slot, ...choice }));
+}
+
+function entryOf<Entry extends Slot>(list: readonly Entry[], at: Slot): Entry | undefined {
+  return list.find(({ material, slot }) => material === at.material && slot === at.slot);
+}
+
+function sameChoice(a: TextureChoice, b: TextureChoice): boolean {
+  return JSON.stringify(a) === JSON.stringify(b);
 }
 
 /** What leads to the slot as it is. */

@@ -22,6 +22,11 @@ interface NextSteps {
   redo: string | null;
 }
 
+/** Whether it outlives its scene. */
+function stays({ ofScene }: Step): boolean {
+  return !ofScene;
+}
+
 const mergeWithinMs = 900;
 const maxSteps = 200;
 
@@ -29,6 +34,8 @@ export class UndoHistory {
   readonly next = new Signal<NextSteps>({ undo: null, redo: null });
   private done: (Step & { at: number })[] = [];
   private undone: Step[] = [];
+  /** While a scene is seen that may not stay: what was done and undone before it. */
+  private before: { done: number; undone: Step[] } | null = null;
   private readonly clock: () => number;
 
   constructor(clock: () => number = () => performance.now()) {
@@ -38,7 +45,7 @@ export class UndoHistory {
   /** Adds a change that was made. */
   add(step: Step): void {
     const at = this.clock();
-    const last = this.done[this.done.length - 1];
+    const last = this.reachable ? this.done[this.done.length - 1] : undefined;
     this.undone = [];
     const continues = step.movement !== undefined && step.movement === last?.movement;
     if (last && last.key === step.key && (continues || at - last.at < mergeWithinMs)) {
@@ -47,14 +54,14 @@ export class UndoHistory {
       last.movement = step.movement;
     } else {
       this.done.push({ ...step, at });
-      if (this.done.length > maxSteps) this.done.shift();
+      if (this.done.length > maxSteps) this.dropOldest();
     }
     this.announce();
   }
 
   /** Undoes the last step. Returns its label, or null without one. */
   undo(): string | null {
-    const step = this.done.pop();
+    const step = this.reachable ? this.done.pop() : undefined;
     if (!step) return null;
     this.undone.push(step);
     step.undo();
@@ -71,22 +78,75 @@ export class UndoHistory {
     return step.label;
   }
 
-  /** Another viewer has loaded another scene. */
+  /** A scene is seen that is being loaded: steps of the one before wait until it stays or goes. */
+  enterScene(): void {
+    if (this.before) return;
+    this.before = { done: this.done.length, undone: this.undone };
+    this.undone = [];
+    this.announce();
+  }
+
+  /** The scene stays. `step` is what has led to it, before all steps in it; null: none is added. */
+  keepScene(step: Step | null): void {
+    if (!this.before) {
+      if (step) this.add(step);
+      return;
+    }
+    const { done } = this.before;
+    if (!step) this.redoAgain();
+    else this.done.splice(done, 0, { ...step, at: this.clock() });
+    this.before = null;
+    if (this.done.length > maxSteps) this.dropOldest();
+    this.announce();
+  }
+
+  /** The scene goes, and the steps in it. */
+  leaveScene(): void {
+    if (!this.before) return;
+    const { done } = this.before;
+    this.redoAgain();
+    this.done = [...this.done.slice(0, done), ...this.done.slice(done).filter(stays)];
+    this.undone = this.undone === this.before.undone ? this.undone : this.undone.filter(stays);
+    this.before = null;
+    this.announce();
+  }
+
+  /** Another viewer has loaded another scene: that which was seen, if there was one. */
   dropScene(): void {
-    const stays = ({ ofScene }: Step): boolean => !ofScene;
-    this.done = this.done.filter(stays);
-    this.undone = this.undone.filter(stays);
+    const done = this.before?.done ?? this.done.length;
+    if (this.before) this.before.undone = this.before.undone.filter(stays);
+    else this.undone = this.undone.filter(stays);
+    this.redoAgain();
+    this.done = [...this.done.slice(0, done).filter(stays), ...this.done.slice(done)];
+    this.before = null;
     this.announce();
   }
 
   clear(): void {
     this.done = [];
     this.undone = [];
+    this.before = null;
     this.announce();
+  }
+
+  /** Whether the last step that was done may be undone now. */
+  private get reachable(): boolean {
+    return this.done.length > (this.before?.done ?? 0);
+  }
+
+  /** What was undone before the scene was seen can be done again, unless it was changed since. */
+  private redoAgain(): void {
+    if (!this.before || this.reachable || this.undone.length > 0) return;
+    this.undone = this.before.undone;
+  }
+
+  private dropOldest(): void {
+    this.done.shift();
+    if (this.before) this.before.done = Math.max(0, this.before.done - 1);
   }
 
   private announce(): void {
     const label = (steps: Step[]): string | null => steps[steps.length - 1]?.label ?? null;
-    this.next.set({ undo: label(this.done), redo: label(this.undone) });
+    this.next.set({ undo: this.reachable ? label(this.done) : null, redo: label(this.undone) });
   }
 }

@@ -26,13 +26,16 @@ struct SurfaceLayer {
   V sheen_roughness;
   V transmission;
   Triple<V> transmitted;
-  Triple<V> grain;  // direction in which the surface is rougher, unit length
-  V anisotropy;     // strength; 0: the surface has no grain
+  Triple<V> grain;         // direction in which the surface is rougher, unit length
+  V anisotropy;            // strength; 0: the surface has no grain
+  V diffuse_transmission;  // fraction of the diffuse light that leaves at the other side
+  Triple<V> diffuse_tint;  // and its colour
 };
 
 template <class V>
 struct LayeredMaterial : SurfaceMaterial<V> {
-  Triple<V> transmitted;  // what passes straight through
+  Triple<V> transmitted;          // what passes straight through
+  Triple<V> diffuse_transmitted;  // albedo toward the eye of diffuse light from the other side
   Triple<V> coat_normal;
   V coat_n_dot_v;
   V coat_roughness;
@@ -44,6 +47,7 @@ struct LayeredMaterial : SurfaceMaterial<V> {
   Triple<V> grain;              // perpendicular to the normal, unit length
   V anisotropy;                 // 0: there is no grain
   bool coated, fuzzy, grained;  // whether any lane has a coat, sheen, or grain
+  bool translucent;             // or scatters light to its other side
 };
 
 /// Alpha of the base's specular lobe along the grain and across it (KHR_materials_anisotropy).
@@ -65,8 +69,9 @@ HWY_INLINE Triple<V> grain_about(const Triple<V>& normal, const Triple<V>& grain
 /// Dims all that lies under another lobe.
 template <class V>
 HWY_INLINE void cover(LayeredMaterial<V>& m, V under) {
-  for (Triple<V>* const part : {&m.f0, &m.f90_minus_f0, &m.specular_albedo, &m.diffuse_albedo,
-                                &m.transmitted, &m.sheen, &m.sheen_albedo}) {
+  for (Triple<V>* const part :
+       {&m.f0, &m.f90_minus_f0, &m.specular_albedo, &m.diffuse_albedo, &m.transmitted,
+        &m.diffuse_transmitted, &m.sheen, &m.sheen_albedo}) {
     *part = *part * under;
   }
 }
@@ -74,6 +79,11 @@ HWY_INLINE void cover(LayeredMaterial<V>& m, V under) {
 template <class V>
 HWY_INLINE V largest_of(const Triple<V>& v) {
   return hn::Max(v.x, hn::Max(v.y, v.z));
+}
+
+template <class V>
+HWY_INLINE Triple<V> reversed(const Triple<V>& v) {
+  return {hn::Neg(v.x), hn::Neg(v.y), hn::Neg(v.z)};
 }
 
 /// Of `lanes`: others keep what they have.
@@ -147,7 +157,14 @@ HWY_INLINE LayeredMaterial<V> make_base(D d, const Triple<V>& base_color, V meta
   channel(base_color.y, layer.f0.y, m.f0.y, m.f90_minus_f0.y, m.specular_albedo.y, albedo.y);
   channel(base_color.z, layer.f0.z, m.f0.z, m.f90_minus_f0.z, m.specular_albedo.z, albedo.z);
   const V entering = rest * (one - hn::Min(largest_of(albedo), one));
-  m.diffuse_albedo = base_color * (entering * (one - layer.transmission));
+  const V scattered = entering * (one - layer.transmission);
+  m.diffuse_albedo = base_color * scattered;
+  m.diffuse_transmitted = {zero, zero, zero};
+  m.translucent = !hn::AllFalse(d, hn::Gt(layer.diffuse_transmission, zero));
+  if (m.translucent) {
+    m.diffuse_albedo = base_color * (scattered * (one - layer.diffuse_transmission));
+    m.diffuse_transmitted = layer.diffuse_tint * (scattered * layer.diffuse_transmission);
+  }
   m.transmitted = layer.transmitted * base_color * entering;
   m.coat_normal = normal;
   m.coat_n_dot_v = m.n_dot_v;
@@ -197,6 +214,49 @@ HWY_INLINE LayeredMaterial<V> make_material(D d, const Triple<V>& base_color, V 
 template <class V>
 HWY_INLINE Triple<V> wide_albedo(const LayeredMaterial<V>& m) {
   return m.fuzzy ? m.diffuse_albedo + m.sheen_albedo : m.diffuse_albedo;
+}
+
+template <class V>
+HWY_INLINE bool scatters_through(const LayeredMaterial<V>& m) {
+  return m.translucent;
+}
+template <class V>
+HWY_INLINE const Triple<V>& transmitted_albedo(const LayeredMaterial<V>& m) {
+  return m.diffuse_transmitted;
+}
+
+/// What spreads widely of light from both sides.
+template <class V, template <class> class Material>
+HWY_INLINE Triple<V> spread_albedo(const Material<V>& m) {
+  if (!scatters_through(m)) return wide_albedo(m);
+  return wide_albedo(m) + transmitted_albedo(m);
+}
+
+/// The environment's diffuse light, as if nothing hid it. `irradiance(normal)`: over pi.
+template <class V, template <class> class Material, class Irradiance>
+HWY_INLINE Triple<V> environment_diffuse(const Material<V>& m, const Irradiance& irradiance) {
+  const Triple<V> light = wide_albedo(m) * irradiance(m.normal);
+  if (!scatters_through(m)) return light;
+  return light + transmitted_albedo(m) * irradiance(reversed(m.normal));
+}
+
+/// Lanes that get light from direction `l`, of any length.
+template <class V, template <class> class Material>
+HWY_INLINE auto is_lit_from(const Material<V>& m, const Triple<V>& l) {
+  const V zero = hn::Zero(hn::DFromV<V>());
+  const auto above = hn::Gt(dot(m.geometric, l), zero);
+  if (!scatters_through(m)) return above;
+  return hn::Or(above, hn::Gt(largest_of(transmitted_albedo(m)), zero));
+}
+
+/// The triangle's normal on the side that is lit from direction `l`.
+template <class V, template <class> class Material>
+HWY_INLINE Triple<V> lit_side(const Material<V>& m, const Triple<V>& l) {
+  if (!scatters_through(m)) return m.geometric;
+  const V zero = hn::Zero(hn::DFromV<V>());
+  const auto behind =
+      hn::And(hn::Gt(largest_of(transmitted_albedo(m)), zero), hn::Le(dot(m.geometric, l), zero));
+  return select(behind, reversed(m.geometric), m.geometric);
 }
 
 template <class V>
@@ -316,6 +376,17 @@ HWY_INLINE Triple<V> shade_light(D d, const LayeredMaterial<V>& m, const Triple<
         light + m.sheen * (sheen_lobe(n_dot_h, n_dot_l, m.n_dot_v, m.sheen_roughness) * n_dot_l);
   }
   return light;
+}
+
+/// BSDF x cosine for light arriving along -l from either side of the triangle.
+template <class D, template <class> class Material, class V = hn::Vec<D>>
+HWY_INLINE Triple<V> shade_light_of_side(D d, const Material<V>& m, const Triple<V>& l) {
+  const Triple<V> near = shade_light(d, m, l);
+  if (!scatters_through(m)) return near;
+  const V zero = hn::Zero(d), cosine = hn::Max(hn::Neg(dot(m.normal, l)), zero);
+  const Triple<V> through =
+      transmitted_albedo(m) * (cosine * hn::Set(d, std::numbers::inv_pi_v<float>));
+  return select(hn::Gt(dot(m.geometric, l), zero), near, through);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

@@ -192,6 +192,19 @@ HWY_INLINE const Triple<V>& wide_albedo(const SurfaceMaterial<V>& m) {
   return m.diffuse_albedo;
 }
 
+/// Whether any lane scatters light to its other side: not without layers.
+template <class V>
+HWY_INLINE constexpr bool scatters_through(const SurfaceMaterial<V>&) {
+  return false;
+}
+
+/// Albedo of the diffuse lobe toward the eye of light from the other side.
+template <class V>
+HWY_INLINE Triple<V> transmitted_albedo(const SurfaceMaterial<V>&) {
+  const V zero = hn::Zero(hn::DFromV<V>());
+  return {zero, zero, zero};
+}
+
 /// Of the narrower specular lobe.
 template <class V>
 HWY_INLINE V narrower_roughness(const SurfaceMaterial<V>& m) {

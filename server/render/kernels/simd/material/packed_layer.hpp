@@ -13,6 +13,7 @@ HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
 inline constexpr std::uint32_t packed_grain = 1u << 30u;
+inline constexpr std::uint32_t packed_tint = 1u << 31u;
 
 /// storage_basis() of shaders/lib/math/geometry.glsl
 template <class V>
@@ -37,10 +38,11 @@ HWY_INLINE Triple<V> decode_grain(V share, const Triple<V>& normal) {
   return normalized(tangent * (one - hn::Abs(y)) + bitangent * y);
 }
 
-/// unpack_layer() of texels of the G-buffer's layers.
+/// unpack_layer() of texels of the G-buffer's layers, and unpack_tint(). `diffuse_transmission`:
+/// what the surface image has of it.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE SurfaceLayer<V> unpack_layer(D d, const Quad<V>& texels, const Triple<V>& normal,
-                                        V& roughness) {
+                                        V diffuse_transmission, V& roughness) {
   const hn::RebindToUnsigned<D> du;
   const hn::RebindToSigned<D> di;
   const auto bits = [du](V word) HWY_ATTR { return hn::BitCast(du, word); };
@@ -90,6 +92,16 @@ HWY_INLINE SurfaceLayer<V> unpack_layer(D d, const Quad<V>& texels, const Triple
     layer.grain = select(grained, decode_grain(unorm8<24>(d, sheen), normal), layer.grain);
   }
   layer.coat_normal = octahedral_decode(encoded.x, encoded.y);
+  const auto tint_flag = hn::Set(du, packed_tint);
+  const auto tinted = hn::RebindMask(d, hn::Eq(hn::And(f0, tint_flag), tint_flag));
+  layer.diffuse_transmission = hn::IfThenElseZero(tinted, diffuse_transmission);
+  layer.diffuse_tint = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  if (!hn::AllFalse(d, tinted)) {
+    const auto words = bits(texels.y);
+    const Triple<V> tint{unorm8<0>(d, words), unorm8<8>(d, words), unorm8<16>(d, words)};
+    layer.diffuse_tint = select(tinted, tint * tint, layer.diffuse_tint);
+    layer.coat_normal = select(tinted, normal, layer.coat_normal);
+  }
   layer.sheen = root * root;
   // A pixel of the G-buffer lets no light through.
   layer.transmission = hn::Zero(d);

@@ -27,21 +27,25 @@ HWY_INLINE Float mis_weight(Float density, Float other) {
 
 /// How likely paths take each lobe, and the way through the surface.
 struct LobeProbabilities {
-  Float specular, through, wide;
+  Float specular, through;
+  Float behind;  // the diffuse lobe at the other side
+  Float wide;
 };
 
-HWY_INLINE LobeProbabilities lobe_probabilities(Float specular, Float through, Float wide) {
-  const Float sum = at_least(specular + wide + through, 1e-6f);
-  LobeProbabilities of{specular / sum, through / sum, zero()};
-  of.wide = one() - of.specular - of.through;
+HWY_INLINE LobeProbabilities lobe_probabilities(Float specular, Float through, Float behind,
+                                                Float wide) {
+  const Float sum = at_least(specular + wide + through + behind, 1e-6f);
+  LobeProbabilities of{specular / sum, through / sum, behind / sum, zero()};
+  of.wide = one() - of.specular - of.through - of.behind;
   return of;
 }
 HWY_INLINE LobeProbabilities lobe_probabilities(const MaterialLanes& m) {
-  return lobe_probabilities(luminance(m.specular_albedo), zero(), luminance(wide_albedo(m)));
+  return lobe_probabilities(luminance(m.specular_albedo), zero(), zero(),
+                            luminance(wide_albedo(m)));
 }
 HWY_INLINE LobeProbabilities lobe_probabilities(const LayeredMaterial<Float>& m) {
   return lobe_probabilities(luminance(m.specular_albedo), luminance(m.transmitted),
-                            luminance(wide_albedo(m)));
+                            luminance(m.diffuse_transmitted), luminance(wide_albedo(m)));
 }
 
 /// BRDF x cosine of the white sheen.
@@ -130,7 +134,7 @@ HWY_INLINE Float3 scattered_specular(const LayeredMaterial<Float>& m, const Floa
   return {light.x + coat, light.y + coat, light.z + coat};
 }
 
-/// BRDF x cosine over the density of `l`, which was drawn with `density` to sample a light, lobe by
+/// BSDF x cosine over the density of `l`, which was drawn with `density` to sample a light, lobe by
 /// lobe: each with the weight that a path's own choice leaves to it.
 template <class Material>
 HWY_INLINE Float3 scattered_light(const Material& m, const Float3& l, Float density, bool diffuse,
@@ -143,7 +147,12 @@ HWY_INLINE Float3 scattered_light(const Material& m, const Float3& l, Float dens
     const Float both = at_least(density + at_least(by_cosine, 0.0f), 1e-30f);
     sent = keep(hn::Gt(cosine, zero()), wide_light(m, l) * (one() / both));
   }
-  return specular ? sent + scattered_specular(m, l, density, lobes.specular) : sent;
+  if (specular) sent = sent + scattered_specular(m, l, density, lobes.specular);
+  if (!scatters_through(m)) return sent;
+  const Float cosine = cosine_density(at_least(hn::Neg(dot(l, m.normal)), 0.0f));
+  const Float both = at_least(hn::MulAdd(lobes.behind, cosine, density), 1e-30f);
+  const Float3 through = transmitted_albedo(m) * (diffuse ? cosine / both : zero());
+  return select(hn::Gt(dot(l, m.geometric), zero()), sent, through);
 }
 
 }  // namespace heliograph::render::kernels::HWY_NAMESPACE

@@ -194,6 +194,28 @@ HWY_NOINLINE void add_grain(LayerSlots<one_level>& slots, const Records& from,
       hn::IfThenElseZero(hn::And(has_tangent, hn::Gt(size, number(1e-6f))), factors.x * texel.z);
 }
 
+/// What of the diffuse light of surfaces leaves at their other side.
+template <bool one_level>
+HWY_NOINLINE void add_diffuse_transmission(LayerSlots<one_level>& slots, const Records& from,
+                                           SurfaceLayer<Float>& layer) {
+  static_assert(offsetof(Layer, diffuse_transmission) == offsetof(Layer, diffuse_tint) + 12);
+  layer.diffuse_transmission = zero();
+  layer.diffuse_tint = numbers(0.0f);
+  const Float4 factors = from.four(HELIOGRAPH_WORD(Layer, diffuse_tint));
+  if (none(hn::Gt(factors.w, zero()))) return;
+  const Float texel = slots.texel(HELIOGRAPH_WORD(Layer, diffuse_transmission_slot)).w;
+  layer.diffuse_transmission = factors.w * texel;
+  const Float4 tint = slots.texel(HELIOGRAPH_WORD(Layer, diffuse_tint_slot));
+  const Float3 absorption = from.triple(HELIOGRAPH_WORD(Layer, absorption));
+  const Float thickness = slots.texel(HELIOGRAPH_WORD(Layer, thickness_slot)).y;
+  const auto left = [&](Float factor, Float color, Float exponent) HWY_ATTR {
+    return factor * color * hn::Exp(tag, hn::Neg(exponent * thickness));
+  };
+  layer.diffuse_tint = {left(factors.x, tint.x, absorption.x),
+                        left(factors.y, tint.y, absorption.y),
+                        left(factors.z, tint.z, absorption.z)};
+}
+
 /// The film on surfaces, whose normal and metalness are known.
 template <bool one_level>
 HWY_INLINE void add_film(LayerSlots<one_level>& slots, const Records& from, const Float3& direction,
@@ -227,6 +249,7 @@ HWY_INLINE void add_layer(const SceneView& scene, const HitRecords& records,
                             select(plain, numbers(glm::vec3(0.0f, 0.0f, 1.0f)), coat_normal) * side,
                             s.layer);
   add_grain<one_level>(slots, from, records, vertex_normal, s.layer);
+  add_diffuse_transmission<one_level>(slots, from, s.layer);
   add_film<one_level>(slots, from, direction, s);
   s.passing = records.material.real(HELIOGRAPH_WORD(Material, passing));
   s.alpha = select(s.has(shared::material_whole_alpha), one(), s.alpha);
