@@ -8,7 +8,7 @@ counts as missed.
 
 import math
 
-MARGIN = 0.02
+MARGIN = 0.04
 
 WHOLE = {
     "dielectric_roughness": 0.9,
@@ -38,30 +38,30 @@ WHOLE = {
 }
 
 SMALL = {
-    "dielectric_roughness": 0.92,
-    "metal_roughness": 0.83,
-    "ior": 0.92,
-    "specular": 0.94,
-    "specular_color": 0.93,
-    "clearcoat": 0.9,
-    "clearcoat_roughness": 0.89,
-    "sheen": 0.9,
-    "sheen_roughness": 0.86,
-    "iridescence": 0.91,
-    "iridescence_thickness": 0.88,
-    "anisotropy": 0.81,
-    "anisotropy_rotation": 0.79,
-    "emission": 0.94,
-    "transmission": 0.84,
-    "transmission_roughness": 0.52,
-    "volume_roughness": 0.54,
-    "volume_attenuation": 0.61,
-    "volume_ior": 0.64,
-    "dispersion": 0.59,
-    "diffuse_transmission": 0.88,
-    "diffuse_transmission_color": 0.85,
-    "alpha_blend": 0.87,
-    "alpha_mask": 0.9,
+    "dielectric_roughness": 0.9,
+    "metal_roughness": 0.81,
+    "ior": 0.9,
+    "specular": 0.92,
+    "specular_color": 0.91,
+    "clearcoat": 0.88,
+    "clearcoat_roughness": 0.87,
+    "sheen": 0.88,
+    "sheen_roughness": 0.84,
+    "iridescence": 0.89,
+    "iridescence_thickness": 0.86,
+    "anisotropy": 0.79,
+    "anisotropy_rotation": 0.77,
+    "emission": 0.92,
+    "transmission": 0.82,
+    "transmission_roughness": 0.5,
+    "volume_roughness": 0.52,
+    "volume_attenuation": 0.59,
+    "volume_ior": 0.62,
+    "dispersion": 0.57,
+    "diffuse_transmission": 0.86,
+    "diffuse_transmission_color": 0.83,
+    "alpha_blend": 0.85,
+    "alpha_mask": 0.88,
 }
 
 
