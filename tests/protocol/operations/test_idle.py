@@ -13,8 +13,8 @@ from harness.viewer import Viewer
 
 SHADERS = pathlib.Path(__file__).resolve().parents[3] / "shaders"
 # After frames, loads and calls: what they have begun ends.
-SETTLING_SECONDS = 4
-COUNTED_SECONDS = 6
+SETTLING_SECONDS = 3
+COUNTED_SECONDS = 4
 # Of all threads together. Measured: without viewers none in half a minute, but for the ends of the
 # test's own connections. With one 0.4: every five seconds a look at the connection, which sends a
 # ping, and the pong. A loop that polls every 300 ms alone makes 3.3.
