@@ -27,9 +27,6 @@ constexpr microseconds max_interval{100'000};
 constexpr double significant = 0.1;
 /// Number of arrivals for a reliable mean.
 constexpr int arrivals_for_mean = 5;
-/// How long frames must be late one after the other: at two hundred frames a second five of them
-/// are a pause of the viewer's program.
-constexpr milliseconds until_lowered{120};
 constexpr double newest_rate_weight = 0.4;
 /// A more expensive level has to fit into this fraction of the budget (hysteresis).
 constexpr double headroom = 0.85;
@@ -80,19 +77,17 @@ void LinkController::arrived(const Arrival& arrival, Clock::time_point now) {
   const bool is_late = late(arrival);
   // A decrease is compared with the late arrivals before it, not with earlier ones in time.
   if (is_late != late_) now_ = {};
-  if (is_late && !late_) late_since_ = now;
   late_ = is_late;
   now_.add(bytes, delay);
   if (now < next_change_) return;
   if (evaluating_ && now_.count >= arrivals_for_mean) evaluate_decrease();
   if (is_late) {
-    const bool stays = now_.count >= arrivals_for_mean && now >= late_since_ + until_lowered;
-    if (stays && late(arrival)) lower(now);
+    if (now_.count >= arrivals_for_mean && late(arrival)) lower(now);
     return;
   }
   // A frame far below the budget does not show that a larger budget would fit.
   if (budget_ == unlimited || bytes < 0.5 * budget_ || now < next_increase_) return;
-  budget_ = std::max(budget_ + increase * std::max(unit_bytes_, bytes), proven_budget());
+  budget_ += increase * std::max(unit_bytes_, bytes);
   next_change_ = now + between_changes;
   next_increase_ = now + between_increases;
 }
@@ -112,13 +107,6 @@ void LinkController::lower(Clock::time_point now) {
   next_change_ = std::max(now + between_changes, settled_at_);
   next_increase_ = now + before_increase;
   now_ = {};
-}
-
-/// Frames of so many bytes are in time, even one that waits for another: had the whole delay been
-/// due to bytes.
-double LinkController::proven_budget() const {
-  if (now_.count < arrivals_for_mean) return 0.0;
-  return now_.bytes * 0.5 * static_cast<double>(always_in_time.count()) / std::max(now_.delay, 1.0);
 }
 
 void LinkController::evaluate_decrease() {

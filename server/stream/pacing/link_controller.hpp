@@ -18,9 +18,8 @@ struct Arrival {
 };
 
 /// Adapts the moving frames of one viewer to its network link. Derives a byte budget per frame from
-/// acknowledgements: multiplicative decrease when they stay late, additive increase while they are
-/// in time (AIMD), with half a second between two changes and longer after a decrease. Where frames
-/// are in time by so much that larger ones would be, too, it increases to those in one step.
+/// acknowledgements: multiplicative decrease as soon as they are late, additive increase while they
+/// are in time (AIMD), with half a second between two changes and longer after a decrease.
 ///
 /// Late is relative to the delay of an empty frame. That base delay does not include queueing: it
 /// is extrapolated from the delays of larger and smaller frames, which every decrease provides. If
@@ -57,7 +56,6 @@ class LinkController {
 
   bool late(const Arrival& arrival) const;
   void lower(Clock::time_point now);
-  double proven_budget() const;
   void evaluate_decrease();
   std::size_t jpeg_level(const EncodingVariant& requested) const;
   std::size_t video_level(std::uint64_t pixels) const;
@@ -67,9 +65,8 @@ class LinkController {
   double unit_bytes_ = 0.0;  // of a JPEG whose relative_bytes() is 1; smoothed
   std::size_t level_ = 0;
   bool late_ = false;  // whether the last arrival was late
-  Clock::time_point late_since_;
-  Mean now_;     // of consecutive arrivals that were late, or in time
-  Mean before_;  // before the last decrease, until it is evaluated
+  Mean now_;           // of consecutive arrivals that were late, or in time
+  Mean before_;        // before the last decrease, until it is evaluated
   double budget_before_ = unlimited;
   bool evaluating_ = false;
   Clock::time_point settled_at_;  // earlier arrivals were sent before the last change

@@ -149,35 +149,6 @@ TEST_F(LinkControllerTest, AVideoGetsABudgetBeforeASmallerSize) {
   EXPECT_NE(controller_.choose(video, pixels_), video) << "those on better ways must not share it";
 }
 
-TEST_F(LinkControllerTest, AShortPauseOfTheViewerIsNotMistakenForASlowLink) {
-  const auto frames_that_take = [&](milliseconds delay, milliseconds time) {
-    for (const auto end = now_ + time; now_ < end; now_ += milliseconds(5)) {
-      controller_.arrived({.bytes = 700'000,
-                           .variant = controller_.choose(whole, pixels_),
-                           .delay = delay,
-                           .interval = milliseconds(5)},
-                          now_);
-    }
-  };
-  for (int pause = 0; pause < 5; ++pause) {
-    frames_that_take(milliseconds(3), milliseconds(500));
-    frames_that_take(milliseconds(60), milliseconds(100));
-    EXPECT_EQ(controller_.choose(whole, pixels_), whole) << "twenty frames were late";
-  }
-  frames_that_take(milliseconds(60), milliseconds(200));
-  EXPECT_NE(controller_.choose(whole, pixels_), whole);
-}
-
-TEST_F(LinkControllerTest, AFastLinkIsGivenWholeFramesSoonAfterADisturbance) {
-  whole_bytes_ = 700'000;
-  const milliseconds fast(5);
-  run({.rate = 300e6, .way = milliseconds(1)}, seconds(2), whole, fast);
-  run({.rate = 4e6, .way = milliseconds(1)}, seconds(8), whole, fast);
-  EXPECT_LT(controller_.choose(whole, pixels_).scale, 100);
-  run({.rate = 300e6, .way = milliseconds(1)}, seconds(5), whole, fast);
-  EXPECT_EQ(controller_.choose(whole, pixels_), whole);
-}
-
 TEST_F(LinkControllerTest, KnowsWhatItMayChoose) {
   EXPECT_TRUE(LinkController::may_choose(whole, whole));
   EXPECT_TRUE(LinkController::may_choose(whole, {.quality = 68}));
