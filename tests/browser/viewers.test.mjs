@@ -353,7 +353,11 @@ stage.test(
       const camera = await stage.server.call("camera.get").catch(() => null); // no scene yet
       return camera && distance(camera.eye, eye) < 1e-3;
     }, "the camera to be restored");
-    assert.equal((await stage.server.call("scene.list")).current, "shadow_objects");
+    // The camera may be there while the scene is seen that is about to replace the server's.
+    await eventually(
+      async () => (await stage.server.call("scene.list")).current === "shadow_objects",
+      "the scene to be restored",
+    );
     assert.equal(await stage.server.setting("exposure.compensation"), 0.75);
     assert.equal((await stage.server.call("lights.list")).lights[0].intensity, 2.25);
     const { bookmarks } = await eventually(async () => {
