@@ -8,6 +8,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/denoise/guide.glsl"
 #include "lib/denoise/history_texels.glsl"
 #include "lib/denoise/moments.glsl"
+#include "lib/math/luminance.glsl"
 #include "lib/math/octahedral.glsl"
 #include "lib/denoise/rectification.glsl"
 #include "lib/denoise/reprojection.glsl"
@@ -49,8 +50,6 @@ struct Surface {
   float roughness;
   float view_z;
 };
-
-float luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }
 
 vec4 sample_at(ivec2 pixel) {
   vec4 texel = imageLoad(raw, pixel);

@@ -34,6 +34,14 @@ protocol::Error stopped() {
   return protocol::error::not_ready("the server is shutting down");
 }
 
+/// Answers two requests with one outcome.
+SceneLoader::Completion in_turn(SceneLoader::Completion first, SceneLoader::Completion then) {
+  return [first = std::move(first), then = std::move(then)](auto outcome) {
+    first(outcome);
+    then(outcome);
+  };
+}
+
 }  // namespace
 
 SceneLoader::SceneLoader(RenderDevices& devices, const SceneCatalogue& catalogue,
@@ -145,10 +153,7 @@ void SceneLoader::enqueue(SceneKey key, const CatalogueEntry& entry, Waiter wait
 void SceneLoader::ask_again(Waiter& waiter, Waiter newer) {
   newer.sees_first_view = waiter.sees_first_view;
   if (newer.variant && !newer.edits) newer.edits = std::move(waiter.edits);
-  newer.done = [first = std::move(waiter.done), then = std::move(newer.done)](auto outcome) {
-    first(outcome);
-    then(outcome);
-  };
+  newer.done = in_turn(std::move(waiter.done), std::move(newer.done));
   waiter = std::move(newer);
 }
 
@@ -158,10 +163,7 @@ void SceneLoader::join(Waiter& waiter, std::vector<Waiter>& replaced) {
   for (Waiter& other : replaced) {
     if (!other.variant) continue;
     if (!waiter.edits) waiter.edits = std::move(other.edits);
-    waiter.done = [first = std::move(other.done), then = std::move(waiter.done)](auto outcome) {
-      first(outcome);
-      then(outcome);
-    };
+    waiter.done = in_turn(std::move(other.done), std::move(waiter.done));
   }
   std::erase_if(replaced, [](const Waiter& other) { return other.variant; });
 }

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "protocol/messages/scaled_size.hpp"
+
 namespace heliograph::stream {
 namespace {
 
 constexpr std::size_t channels = 4;
-
-std::uint32_t scaled(std::uint32_t side, int percent) {
-  return std::max<std::uint32_t>(1, (side * static_cast<std::uint32_t>(percent) + 50) / 100);
-}
 
 /// Calls `use(i, weight)` for each of the `count` source positions that target position `at` of
 /// `new_count` covers. Weights are in units of 1 / `new_count` of a source position; their sum is
@@ -29,8 +27,8 @@ void for_covered(std::size_t at, std::size_t count, std::size_t new_count, Use u
 }  // namespace
 
 ImageView ImageScaler::scale(const ImageView& image, int percent) {
-  const std::uint32_t width = scaled(image.width, percent);
-  const std::uint32_t height = scaled(image.height, percent);
+  const std::uint32_t width = protocol::scaled_side(image.width, percent);
+  const std::uint32_t height = protocol::scaled_side(image.height, percent);
   if (width == image.width && height == image.height) return image;
   pixels_.resize(channels * width * height);
   row_.resize(channels * image.width);

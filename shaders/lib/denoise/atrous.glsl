@@ -6,6 +6,17 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(push_constant) uniform Constants { AtrousConstants constants; };
 #include "lib/denoise/smooth_variance.glsl"
 
+/// `noise`: standard deviation at the centre.
+vec2 tap_exponent(Center c, vec2 noise, Guide q, vec4 value, vec2 offset) {
+  float shared_exponent =
+      depth_exponent(plane_distance(c.view_z, c.slope, c.curve, q.view_z, offset),
+                     depth_allowance(c.slope, offset, c.footprint), constants.depth_sigma) +
+      normal_exponent(dot(c.normal, q.normal), constants.normal_power) +
+      signal_exponent(c.roughness, q.roughness);
+  return shared_exponent + luminance_exponent(c.brightness, brightness(value), noise,
+                                              constants.luminance_sigma, smallest_difference);
+}
+
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   ivec2 extent = image_extent(constants);
@@ -13,15 +24,14 @@ void main() {
   vec4 value = imageLoad(signal, pixel);
   vec4 guide_p = imageLoad(guide, pixel);
   Guide p = decode_guide(guide_p);
-  if (guide_is_background(guide_p) || constants.level >= levels(constants, p.roughness)) {
+  if (is_left(constants, guide_p, p)) {
     imageStore(filtered, pixel, value);
     return;
   }
-  Center c = center_at(constants, pixel, p);
-  c.brightness = brightness(value);
+  Center c = center_at(constants, pixel, p, value);
   vec2 variance = has(constants, atrous_variance_prefilter) ? smooth_variance(pixel, extent)
                                                             : variance_of(value);
-  c.noise = sqrt(max(variance, vec2(0.0)));
+  vec2 noise = sqrt(max(variance, vec2(0.0)));  // standard deviation
 
   int step = step_at(constants, c.roughness);
   ivec2 shift = jitter(constants, pixel, step);
@@ -34,8 +44,12 @@ void main() {
       if (any(lessThan(tap, ivec2(0))) || any(greaterThanEqual(tap, extent))) continue;
       vec4 guide_q = imageLoad(guide, tap);
       if (guide_is_background(guide_q)) continue;
-      add_tap(constants, c, tap, kernel_exponent[abs(x)] + kernel_exponent[abs(y)],
-              decode_guide(guide_q), imageLoad(signal, tap), sum, total);
+      vec4 value_q = imageLoad(signal, tap);
+      vec2 weight =
+          edge_weight(kernel_exponent[abs(x)] + kernel_exponent[abs(y)] +
+                      tap_exponent(c, noise, decode_guide(guide_q), value_q, vec2(tap - pixel)));
+      sum += spread(weight) * value_q;
+      total += weight;
     }
   }
   imageStore(filtered, pixel, filtered_value(constants, value, sum, total));

@@ -53,11 +53,11 @@ struct Line {
   ivec2 middle;   // of the taps
   ivec2 axis;
   int step;
-  float rise;    // of view Z per texel along the axis, metres
-  float weight;  // of a depth off the plane, per texel of distance: see depth_exponent()
+  float rise;          // of view Z per texel along the axis, metres
+  float by_depth;      // weight of a depth off the plane, per texel of distance: depth_exponent()
+  vec2 by_brightness;  // weight of its difference: luminance_exponent()
 };
 
-/// `c.noise` is the reciprocal of what brightness may differ by.
 void add_tap(Center c, Line line, ivec2 extent, int number, float exponent, inout vec4 sum,
              inout vec2 total) {
   ivec2 tap = line.middle + number * line.step * line.axis;
@@ -70,8 +70,8 @@ void add_tap(Center c, Line line, ivec2 extent, int number, float exponent, inou
   float off = plane_distance(c.view_z, line.axis * line.rise, c.curve, q.view_z, tap - c.pixel);
   exponent += normal_exponent(dot(c.normal, q.normal), constants.normal_power) +
               signal_exponent(c.roughness, q.roughness) -
-              off * min(line.weight / abs(away), 1e30);
-  vec2 weight = edge_weight(exponent - abs(brightness(value) - c.brightness) * c.noise);
+              off * min(line.by_depth / abs(away), 1e30);
+  vec2 weight = edge_weight(exponent - abs(brightness(value) - c.brightness) * line.by_brightness);
   sum += spread(weight) * value;
   total += weight;
 }
@@ -89,20 +89,19 @@ void main() {
   if (outside) return;
   vec4 guide_p = imageLoad(guide, pixel);
   Guide p = decode_guide(guide_p);
-  if (guide_is_background(guide_p) || constants.level >= levels(constants, p.roughness)) {
+  if (is_left(constants, guide_p, p)) {
     imageStore(filtered, pixel, value);
     return;
   }
-  Center c = center_at(constants, pixel, p);
-  c.brightness = brightness(value);
-  vec2 deviation = sqrt(max(variance, vec2(0.0)));
-  c.noise = 1.0 / (constants.luminance_sigma * deviation + smallest_difference);
+  Center c = center_at(constants, pixel, p, value);
+  vec2 noise = sqrt(max(variance, vec2(0.0)));  // standard deviation
   Line line;
   line.step = step_at(constants, c.roughness);
   line.middle = pixel + jitter(constants, pixel, line.step);
   line.axis = min(ivec2(constants.columns, constants.rows), ivec2(1));
   line.rise = dot(c.slope, vec2(line.axis));
-  line.weight = 1.0 / (constants.depth_sigma * (abs(line.rise) + 0.5 * c.footprint));
+  line.by_depth = 1.0 / (constants.depth_sigma * (abs(line.rise) + 0.5 * c.footprint));
+  line.by_brightness = 1.0 / (constants.luminance_sigma * noise + smallest_difference);
   vec4 sum = value;
   vec2 total = vec2(1.0);
   add_tap(c, line, extent, -2, kernel_exponent[2], sum, total);

@@ -1,6 +1,6 @@
-// How the edge-avoiding a-trous wavelet filter (Dammertz et al. 2010) weighs its taps, guided by
-// variance (Schied et al. 2017, equations 1 to 5). What a signal is comes from the shader that
-// includes this.
+// Pixels and taps of the edge-avoiding a-trous wavelet filter (Dammertz et al. 2010), which is
+// guided by variance (Schied et al. 2017, equations 1 to 5). What a signal is comes from the shader
+// that includes this.
 #ifndef HELIOGRAPH_DENOISE_ATROUS_TAPS_GLSL
 #define HELIOGRAPH_DENOISE_ATROUS_TAPS_GLSL
 #include "lib/denoise/edge_stopping.glsl"
@@ -28,11 +28,9 @@ struct Center {
   float curve;
   float footprint;
   vec2 brightness;
-  vec2 noise;  // standard deviation
 };
 
-/// What is known of a pixel without its signal.
-Center center_at(AtrousConstants constants, ivec2 pixel, Guide p) {
+Center center_at(AtrousConstants constants, ivec2 pixel, Guide p, vec4 value) {
   Center c;
   c.pixel = pixel;
   c.normal = p.normal;
@@ -41,6 +39,7 @@ Center center_at(AtrousConstants constants, ivec2 pixel, Guide p) {
   c.slope = imageLoad(depth_slope, pixel).xy;
   c.curve = enabled(frame_orthographic) ? 0.0 : 1.0 / c.view_z;
   c.footprint = pixel_footprint(c.view_z) * float(constants.pixels_per_texel);
+  c.brightness = brightness(value);
   return c;
 }
 
@@ -62,6 +61,11 @@ int levels(AtrousConstants constants, float roughness) {
   return roughness <= atrous_blurred_once_roughness ? min(most, 1) : most;
 }
 
+/// Whether this iteration leaves the pixel as it is.
+bool is_left(AtrousConstants constants, vec4 texel, Guide p) {
+  return guide_is_background(texel) || constants.level >= levels(constants, p.roughness);
+}
+
 /// Pixels from tap to tap: twice as many on surfaces rougher than the threshold, with a band
 /// between, so that textured roughness does not show the border.
 int step_at(AtrousConstants constants, float roughness) {
@@ -78,25 +82,6 @@ ivec2 jitter(AtrousConstants constants, ivec2 pixel, int step) {
                        frame.seed);
   ivec2 axes = min(ivec2(constants.columns, constants.rows), ivec2(1));
   return axes * ivec2(round((u - 0.5) * 0.5 * float(step)));
-}
-
-vec2 tap_exponent(AtrousConstants constants, Center c, Guide q, vec4 value, vec2 offset) {
-  float shared_exponent =
-      depth_exponent(plane_distance(c.view_z, c.slope, c.curve, q.view_z, offset),
-                     depth_allowance(c.slope, offset, c.footprint), constants.depth_sigma) +
-      normal_exponent(dot(c.normal, q.normal), constants.normal_power) +
-      signal_exponent(c.roughness, q.roughness);
-  return shared_exponent + luminance_exponent(c.brightness, brightness(value), c.noise,
-                                              constants.luminance_sigma, smallest_difference);
-}
-
-/// Adds what lies at `tap`, inside of the images: `value` of the surface `q`.
-void add_tap(AtrousConstants constants, Center c, ivec2 tap, float exponent, Guide q, vec4 value,
-             inout vec4 sum, inout vec2 total) {
-  vec2 weight =
-      edge_weight(exponent + tap_exponent(constants, c, q, value, vec2(tap - c.pixel)));
-  sum += spread(weight) * value;
-  total += weight;
 }
 
 /// Of weighed taps, the pixel's own `value` among them.

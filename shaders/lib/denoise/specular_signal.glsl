@@ -2,10 +2,11 @@
 #ifndef HELIOGRAPH_SPECULAR_SIGNAL_GLSL
 #define HELIOGRAPH_SPECULAR_SIGNAL_GLSL
 #include "lib/denoise/edge_stopping.glsl"
+#include "lib/math/luminance.glsl"
 
 const float smallest_difference = 1e-4;
 
-vec2 brightness(vec4 signal) { return vec2(dot(signal.rgb, vec3(0.2126, 0.7152, 0.0722))); }
+vec2 brightness(vec4 signal) { return vec2(luminance(signal.rgb)); }
 vec2 variance_of(vec4 signal) { return signal.ww; }
 vec4 with_variance(vec4 signal, vec2 variance) { return vec4(signal.rgb, variance.x); }
 /// Moments know of no colours.

@@ -4,6 +4,7 @@
 #include "lib/lighting/area_lights.glsl"
 #include "lib/lighting/brdf.glsl"
 #include "lib/frame.glsl"
+#include "lib/math/luminance.glsl"
 
 /// A light as one point of it reaches a surface.
 struct LightSample {
@@ -12,8 +13,6 @@ struct LightSample {
   vec3 irradiance;     // on a surface facing `direction`, unshadowed
   vec3 ray_direction;  // toward the point of the light that a shadow ray looks for
 };
-
-float luminance(vec3 color) { return dot(color, vec3(0.2126, 0.7152, 0.0722)); }
 
 Light environment_sun() {
   Light light;

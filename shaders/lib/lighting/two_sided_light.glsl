@@ -4,6 +4,7 @@
 #ifndef HELIOGRAPH_TWO_SIDED_LIGHT_GLSL
 #define HELIOGRAPH_TWO_SIDED_LIGHT_GLSL
 #include "lib/lighting/brdf.glsl"
+#include "lib/math/luminance.glsl"
 
 struct SideShares {
   vec3 near;
@@ -12,10 +13,9 @@ struct SideShares {
 };
 
 SideShares side_shares(SurfaceMaterial m) {
-  const vec3 luminances = vec3(0.2126, 0.7152, 0.0722);
   vec3 both = spread_albedo(m);
   vec3 by = 1.0 / max(both, vec3(1e-6));
-  float behind = dot(m.diffuse_transmitted, luminances) / max(dot(both, luminances), 1e-6);
+  float behind = luminance(m.diffuse_transmitted) / max(luminance(both), 1e-6);
   return SideShares(wide_albedo(m) * by, m.diffuse_transmitted * by, behind);
 }
 

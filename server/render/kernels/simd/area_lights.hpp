@@ -201,9 +201,8 @@ HWY_INLINE Triple<V> area_contribution(D d, const shared::Light& light, const Sq
     energy = {energy.x + of_coat, energy.y + of_coat, energy.z + of_coat};
   }
   if (m.translucent) {
-    const V behind = area_light_shares(d, light, ltc, reversed(m.normal), m.eye, m.n_dot_v,
-                                       m.roughness, position)
-                         .x;
+    const V behind =
+        area_light_shares(d, light, ltc, -m.normal, m.eye, m.n_dot_v, m.roughness, position).x;
     energy = energy + m.diffuse_transmitted * behind;
   }
   return splat(d, light.color) * energy;

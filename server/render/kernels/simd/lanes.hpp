@@ -117,9 +117,6 @@ HWY_INLINE Float3 numbers(float v) {
   return {number(v), number(v), number(v)};
 }
 
-HWY_INLINE Float3 operator-(const Float3& v) {
-  return {hn::Neg(v.x), hn::Neg(v.y), hn::Neg(v.z)};
-}
 /// a * b + c
 HWY_INLINE Float3 multiply_add(const Float3& a, Float b, const Float3& c) {
   return {hn::MulAdd(a.x, b, c.x), hn::MulAdd(a.y, b, c.y), hn::MulAdd(a.z, b, c.z)};

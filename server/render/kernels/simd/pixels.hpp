@@ -57,6 +57,10 @@ HWY_INLINE Triple<V> operator-(const Triple<V>& a, const Triple<V>& b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 template <class V>
+HWY_INLINE Triple<V> operator-(const Triple<V>& v) {
+  return {hn::Neg(v.x), hn::Neg(v.y), hn::Neg(v.z)};
+}
+template <class V>
 HWY_INLINE Triple<V> operator*(const Triple<V>& a, const Triple<V>& b) {
   return {a.x * b.x, a.y * b.y, a.z * b.z};
 }

@@ -1,8 +1,8 @@
 #include "render/passes/jpeg/encode_jpeg.hpp"
 
-#include <algorithm>
 #include <cstring>
 
+#include "protocol/messages/scaled_size.hpp"
 #include "render/resources/tables/jpeg_tables.hpp"
 #include "shaders/embedded.hpp"
 
@@ -45,10 +45,7 @@ constexpr std::uint32_t most_side = 65535;  // of a JPEG
 constexpr std::uint64_t most_scaled_pixels = std::uint64_t{1} << 24;
 
 VkExtent2D encoded_size(VkExtent2D size, int percent) {
-  const auto side = [percent](std::uint32_t whole) {
-    return std::max(1u, (whole * static_cast<std::uint32_t>(percent) + 50u) / 100u);
-  };
-  return {side(size.width), side(size.height)};
+  return {protocol::scaled_side(size.width, percent), protocol::scaled_side(size.height, percent)};
 }
 
 VkExtent2D mcus_of(VkExtent2D size) {

@@ -81,11 +81,6 @@ HWY_INLINE V largest_of(const Triple<V>& v) {
   return hn::Max(v.x, hn::Max(v.y, v.z));
 }
 
-template <class V>
-HWY_INLINE Triple<V> reversed(const Triple<V>& v) {
-  return {hn::Neg(v.x), hn::Neg(v.y), hn::Neg(v.z)};
-}
-
 /// Of `lanes`: others keep what they have.
 template <class V, class M>
 HWY_INLINE void add_sheen(LayeredMaterial<V>& m, const SurfaceLayer<V>& layer, V albedo, M lanes) {
@@ -237,7 +232,7 @@ template <class V, template <class> class Material, class Irradiance>
 HWY_INLINE Triple<V> environment_diffuse(const Material<V>& m, const Irradiance& irradiance) {
   const Triple<V> light = wide_albedo(m) * irradiance(m.normal);
   if (!scatters_through(m)) return light;
-  return light + transmitted_albedo(m) * irradiance(reversed(m.normal));
+  return light + transmitted_albedo(m) * irradiance(-m.normal);
 }
 
 /// Lanes that get light from direction `l`, of any length.
@@ -256,7 +251,7 @@ HWY_INLINE Triple<V> lit_side(const Material<V>& m, const Triple<V>& l) {
   const V zero = hn::Zero(hn::DFromV<V>());
   const auto behind =
       hn::And(hn::Gt(largest_of(transmitted_albedo(m)), zero), hn::Le(dot(m.geometric, l), zero));
-  return select(behind, reversed(m.geometric), m.geometric);
+  return select(behind, -m.geometric, m.geometric);
 }
 
 template <class V>
