@@ -102,3 +102,36 @@ test("steps in a scene are void when another viewer loads another scene", () => 
   history.undo();
   assert.deepEqual(values, { exposure: 0, sun: 0 });
 });
+
+test("undo waits for the answer to a change that may add a step", async () => {
+  const { values, history, change } = numbers();
+  change("exposure", 1);
+  let answer = (): void => {};
+  const answered = new Promise<void>((resolve) => (answer = resolve));
+  const applied = history.during(answered.then(() => change("sun", 5)));
+  history.whenKnown(() => void history.undo());
+  assert.equal(values.exposure, 1, "the step before is not undone in its place");
+  answer();
+  await applied;
+  assert.deepEqual(values, { exposure: 1, sun: 0 });
+  assert.deepEqual(history.next.value, { undo: "exposure", redo: "sun" });
+});
+
+test("undo that waited for a refused change undoes the step before", async () => {
+  const { values, history, change } = numbers();
+  change("exposure", 1);
+  const refused = history.during(Promise.reject(new Error("refused")));
+  history.whenKnown(() => void history.undo());
+  await assert.rejects(refused);
+  assert.equal(values.exposure, 0);
+});
+
+test("undo that waits is dropped with the history", async () => {
+  const { values, history, change } = numbers();
+  const ended = history.during(Promise.resolve());
+  history.whenKnown(() => void history.undo());
+  history.clear();
+  change("exposure", 1);
+  await ended;
+  assert.equal(values.exposure, 1);
+});

@@ -84,7 +84,20 @@ export class SceneParts {
   }
 
   /** Adds a light; its name, or null where the server refuses it. */
-  async addLight(request: LightAdd): Promise<string | null> {
+  addLight(request: LightAdd): Promise<string | null> {
+    return this.host.history.during(this.addRecorded(request));
+  }
+
+  removeLight(name: string): Promise<void> {
+    return this.host.history.during(this.removeRecorded(name));
+  }
+
+  /** Applies a document in place of all edits. Whether the server takes it. */
+  applyEdits(edits: EditDocument): Promise<boolean> {
+    return this.host.history.during(this.applyRecorded(edits));
+  }
+
+  private async addRecorded(request: LightAdd): Promise<string | null> {
     const light = await this.sendLight(request);
     if (!light) return null;
     const again = addRequest(light);
@@ -98,7 +111,7 @@ export class SceneParts {
     return light.name;
   }
 
-  async removeLight(name: string): Promise<void> {
+  private async removeRecorded(name: string): Promise<void> {
     const light = this.lights.value.find((one) => one.name === name);
     if (!light || !(await this.sendRemoval(name))) return;
     this.host.history.add({
@@ -115,8 +128,7 @@ export class SceneParts {
     return (await this.attempt("edits.get", {}))?.edits ?? null;
   }
 
-  /** Applies a document in place of all edits. Whether the server takes it. */
-  async applyEdits(edits: EditDocument): Promise<boolean> {
+  private async applyRecorded(edits: EditDocument): Promise<boolean> {
     const before = await this.readEdits();
     if (!before || !(await this.sendEdits(edits))) return false;
     this.host.history.add({

@@ -306,13 +306,17 @@ export class Viewer {
   }
 
   undo(): void {
-    const label = this.mayChange ? this.history.undo() : null;
-    if (label) this.onInfo(`Undone: ${label}`, "history");
+    this.history.whenKnown(() => {
+      const label = this.mayChange ? this.history.undo() : null;
+      if (label) this.onInfo(`Undone: ${label}`, "history");
+    });
   }
 
   redo(): void {
-    const label = this.mayChange ? this.history.redo() : null;
-    if (label) this.onInfo(`Done again: ${label}`, "history");
+    this.history.whenKnown(() => {
+      const label = this.mayChange ? this.history.redo() : null;
+      if (label) this.onInfo(`Done again: ${label}`, "history");
+    });
   }
 
   report(error: unknown): void {

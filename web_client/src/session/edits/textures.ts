@@ -67,7 +67,15 @@ export class Textures {
   }
 
   /** Changes a slot, as a step of the history. Whether the server takes it. */
-  async choose(material: string, slot: string, choice: TextureChoice): Promise<boolean> {
+  choose(material: string, slot: string, choice: TextureChoice): Promise<boolean> {
+    return this.host.history.during(this.chooseRecorded(material, slot, choice));
+  }
+
+  private async chooseRecorded(
+    material: string,
+    slot: string,
+    choice: TextureChoice,
+  ): Promise<boolean> {
     const before = choiceOf(this.find(material, slot));
     if (!(await this.send(material, slot, choice))) return false;
     const label = `${humanise(slot).toLowerCase()} texture of ${material}`;

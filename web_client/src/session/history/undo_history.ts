@@ -36,10 +36,34 @@ export class UndoHistory {
   private undone: Step[] = [];
   /** While a scene is seen that may not stay: what was done and undone before it. */
   private before: { done: number; undone: Step[] } | null = null;
+  /** Changes that the server has not answered: each may still add a step. */
+  private unanswered = 0;
+  /** Undo and redo that were asked for meanwhile. */
+  private waiting: (() => void)[] = [];
   private readonly clock: () => number;
 
   constructor(clock: () => number = () => performance.now()) {
     this.clock = clock;
+  }
+
+  /**
+   * Holds back what is passed to `whenKnown` until `change` ends, which adds its step when the
+   * server has taken it: what is undone then is that change, not the one before.
+   */
+  async during<Result>(change: Promise<Result>): Promise<Result> {
+    this.unanswered += 1;
+    try {
+      return await change;
+    } finally {
+      this.unanswered -= 1;
+      if (this.unanswered === 0) for (const act of this.waiting.splice(0)) act();
+    }
+  }
+
+  /** Calls `act`, which undoes or redoes, as soon as no change is without an answer. */
+  whenKnown(act: () => void): void {
+    if (this.unanswered === 0) act();
+    else this.waiting.push(act);
   }
 
   /** Adds a change that was made. */
@@ -126,6 +150,7 @@ export class UndoHistory {
     this.done = [];
     this.undone = [];
     this.before = null;
+    this.waiting = [];
     this.announce();
   }
 
