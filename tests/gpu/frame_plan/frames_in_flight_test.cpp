@@ -1,0 +1,155 @@
+// Frames that are canceled, and those that begin while the device works on others.
+#include <cstring>
+
+#include "tests/gpu/frame_plan/frame_plan_fixture.hpp"
+
+namespace heliograph::gpu {
+namespace {
+
+TEST_F(FramePlanTest, CanceledFrameDoesNotSwapHistories) {
+  if (!device_.is_cpu()) GTEST_SKIP() << "frames are canceled on CPU devices only";
+  const auto a = image("a"), b = image("b");
+  const History history = plan_.history("count", format);
+  add("count", history.previous, history.current);
+  add("behind", a, b);
+  plan_.compile();
+  EXPECT_TRUE(plan_.execute());
+  for (const int passes : {0, 1}) {
+    int asked = 0;
+    EXPECT_FALSE(plan_.execute([&] { return asked++ == passes; }));
+    EXPECT_EQ(asked, passes + 1) << "no pass runs after the one that was refused";
+  }
+  EXPECT_TRUE(plan_.execute([] { return false; }));
+  EXPECT_EQ(value(history.current), 2.0f);
+}
+
+TEST_F(FramePlanTest, PassesSeeThatTheirFrameIsCanceled) {
+  if (!device_.is_cpu()) GTEST_SKIP() << "frames are canceled on CPU devices only";
+  int asked = 0, seen = 0;
+  bool behind = false;
+  plan_.host("long", [&] {
+    for (int i = 0; i < 10; ++i) seen += plan_.is_canceled();
+  });
+  plan_.host("behind", [&] { behind = true; });
+  plan_.finish_frames_from_here();
+  plan_.host("last", [&] { EXPECT_FALSE(plan_.is_canceled()) << "too late"; });
+  plan_.compile();
+  EXPECT_FALSE(plan_.execute([&] { return asked++ == 4; })) << "also if it is true only once";
+  EXPECT_EQ(asked, 5) << "once before the pass, then in it until it was true";
+  EXPECT_EQ(seen, 7);
+  EXPECT_FALSE(behind);
+  asked = 0;
+  EXPECT_TRUE(plan_.execute([&] { return asked++ > 11; })) << "asked 12 times before the end";
+  EXPECT_TRUE(behind);
+  EXPECT_FALSE(plan_.is_canceled());
+  EXPECT_TRUE(plan_.execute());
+}
+
+// As renderers of two sessions do.
+TEST_F(FramePlanTest, OneFrameBeginsWhileTheDeviceWorksOnAnother) {
+  const auto a = image("a"), b = image("b");
+  add("add", a, b, 2.0f);
+  plan_.read_back(b);
+  plan_.compile();
+  FramePlan other(device_, {5, 3});
+  const History count = other.history("count", format);
+  other.pass("count", program_)
+      .read(count.previous)
+      .write(count.current)
+      .constants(1.0f)
+      .dispatch(other.extent());
+  other.compile();
+  for (int frame = 1; frame <= 3; ++frame) {
+    EXPECT_TRUE(plan_.begin());
+    EXPECT_TRUE(other.begin());
+    EXPECT_EQ(plan_.in_flight(), !device_.is_cpu());
+    plan_.finish();
+    EXPECT_FALSE(plan_.in_flight());
+    other.finish();
+    EXPECT_EQ(value(b), 2.0f);
+    const auto bytes = other.latest(count.current).download();
+    EXPECT_EQ(*reinterpret_cast<const float*>(bytes.data()), float(frame));
+  }
+}
+
+TEST_F(FramePlanTest, MayEndWhileTheDeviceWorksOnItsFrame) {
+  const auto a = image("a"), b = image("b");
+  add("add", a, b);
+  plan_.compile();
+  {
+    FramePlan other(device_, {512, 512});
+    const auto from = other.image("from", format), to = other.image("to", format);
+    other.pass("add", program_).read(from).write(to).constants(1.0f).dispatch(other.extent());
+    other.compile();
+    EXPECT_TRUE(other.begin());
+  }
+  plan_.execute();
+  EXPECT_EQ(value(b), 1.0f);
+}
+
+TEST_F(FramePlanTest, FramesBeginAndFinishInTurn) {
+  const auto a = image("a"), b = image("b");
+  add("add", a, b);
+  plan_.compile();
+  EXPECT_THROW(plan_.finish(), GpuError);
+  plan_.begin();
+  if (!device_.is_cpu()) plan_.begin();
+  EXPECT_THROW(plan_.begin(), GpuError);
+  plan_.finish();
+}
+
+TEST_F(FramePlanTest, TheNextFrameBeginsWhileTheDeviceWorksOnOne) {
+  if (device_.is_cpu()) GTEST_SKIP() << "processors have finished a frame when it has begun";
+  const History history = plan_.history("count", format);
+  add("count", history.previous, history.current);
+  plan_.read_back(history.current);
+  plan_.compile();
+  plan_.execute();  // with timers
+  const auto count = [&] {
+    float value = 0.0f;
+    std::memcpy(&value, plan_.read().data(), sizeof value);
+    return value;
+  };
+  plan_.begin();
+  for (int frame = 2; frame <= 9; ++frame) {
+    ASSERT_TRUE(plan_.can_begin_another());
+    plan_.begin();
+    EXPECT_FALSE(plan_.can_begin_another()) << "two are enough";
+    plan_.finish();
+    EXPECT_EQ(count(), static_cast<float>(frame));
+  }
+  plan_.finish();
+  EXPECT_EQ(count(), 10.0f);
+}
+
+TEST_F(FramePlanTest, FramesWithTimersAreNotOverlapped) {
+  if (device_.is_cpu()) GTEST_SKIP() << "processors have finished a frame when it has begun";
+  const auto a = image("a"), b = image("b");
+  bool wanted = false;
+  add("maybe", a, b).when([&] { return wanted; });
+  add("always", a, image("c"));
+  plan_.compile();
+  plan_.execute();
+  EXPECT_LT(plan_.timings()[0].milliseconds, 0.0f);
+  int overlapped = 0;
+  for (int frame = 0; frame < 40; ++frame) {
+    plan_.begin();
+    overlapped += plan_.can_begin_another();
+    plan_.finish();
+  }
+  EXPECT_GE(overlapped, 36);
+  EXPECT_LT(overlapped, 40) << "one of sixteen is timed";
+  wanted = true;
+  plan_.execute();
+  const float measured = plan_.timings()[0].milliseconds;
+  EXPECT_GT(measured, 0.0f);
+  wanted = false;
+  plan_.execute();
+  EXPECT_LT(plan_.timings()[0].milliseconds, 0.0f);
+  wanted = true;
+  plan_.execute();
+  EXPECT_EQ(plan_.timings()[0].milliseconds, measured) << "not timed again";
+}
+
+}  // namespace
+}  // namespace heliograph::gpu
