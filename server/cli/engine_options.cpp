@@ -25,6 +25,12 @@ render::JpegEncoding jpeg_encoding(const std::string& name) {
   return name == "off" ? render::JpegEncoding::off : render::JpegEncoding::automatic;
 }
 
+render::CompressedTextures texture_compression(const std::string& name) {
+  using render::CompressedTextures;
+  if (name == "on") return CompressedTextures::on;
+  return name == "off" ? CompressedTextures::off : CompressedTextures::automatic;
+}
+
 }  // namespace
 
 std::filesystem::path cache_folder() {
@@ -63,7 +69,8 @@ render::EngineOptions engine_options(const DeviceOptions& options) {
           .validation = std::getenv("HELIOGRAPH_VALIDATION") != nullptr,
           .cache_folder = cache_folder(),
           .shader_folder = options.shader_dir,
-          .jpeg = jpeg_encoding(options.gpu_jpeg)};
+          .jpeg = jpeg_encoding(options.gpu_jpeg),
+          .compressed_textures = texture_compression(options.compressed_textures)};
 }
 
 std::vector<std::unique_ptr<render::Engine>> make_engines(const DeviceOptions& options) {

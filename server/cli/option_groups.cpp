@@ -62,6 +62,13 @@ void add_device_options(CLI::App& command, DeviceOptions& options) {
       ->check(one_of(tracer_names()))
       ->capture_default_str()
       ->group("Device");
+  command
+      .add_option("--compressed-textures", options.compressed_textures,
+                  "Whether textures of KTX2 files stay compressed on the device (BC7, a quarter of "
+                  "the memory), unless that loses too much; automatic: on GPUs that read it")
+      ->check(one_of({"automatic", "on", "off"}))
+      ->capture_default_str()
+      ->group("Device");
 }
 
 void add_shader_option(CLI::App& command, DeviceOptions& options) {
@@ -121,7 +128,8 @@ void add_log_options(CLI::App& command, LogOptions& options) {
 void add_environment_option(CLI::App& command, std::string& environment) {
   command
       .add_option("--environment", environment,
-                  ".hdr or .exr file that lights the scenes [the one next to the scene]")
+                  ".hdr or .exr file that lights the scenes [the light in the scene's file, or the "
+                  "one next to it]")
       ->type_name("FILE")
       ->check(CLI::ExistingFile)
       ->group("Scenes");

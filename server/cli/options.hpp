@@ -22,6 +22,7 @@ struct DeviceOptions {
   std::string tracer = "auto";
   std::string shader_dir;        // empty: the embedded shaders
   std::string gpu_jpeg = "off";  // for viewers, whom only a server has
+  std::string compressed_textures = "automatic";
 };
 
 struct SettingsOptions {

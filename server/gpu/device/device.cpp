@@ -50,6 +50,15 @@ std::string cache_name(VkPhysicalDevice device) {
   return name + ".bin";
 }
 
+bool fills_and_filters(VkPhysicalDevice device, VkFormat format) {
+  constexpr VkFormatFeatureFlags needed =
+      VK_FORMAT_FEATURE_SAMPLED_IMAGE_BIT | VK_FORMAT_FEATURE_SAMPLED_IMAGE_FILTER_LINEAR_BIT |
+      VK_FORMAT_FEATURE_TRANSFER_SRC_BIT | VK_FORMAT_FEATURE_TRANSFER_DST_BIT;
+  VkFormatProperties properties;
+  vkGetPhysicalDeviceFormatProperties(device, format, &properties);
+  return (properties.optimalTilingFeatures & needed) == needed;
+}
+
 void destroy(VkDevice device, VkSemaphore timeline, VkPipelineCache cache) {
   if (!device) return;
   vkDestroyPipelineCache(device, cache, nullptr);
@@ -122,6 +131,10 @@ void Device::create(const Instance& instance) {
   VkPhysicalDeviceFeatures supported;
   vkGetPhysicalDeviceFeatures(report_.handle, &supported);
   features.features.samplerAnisotropy = supported.samplerAnisotropy;
+  features.features.textureCompressionBC = supported.textureCompressionBC;
+  samples_bc7_ = supported.textureCompressionBC &&
+                 fills_and_filters(report_.handle, VK_FORMAT_BC7_UNORM_BLOCK) &&
+                 fills_and_filters(report_.handle, VK_FORMAT_BC7_SRGB_BLOCK);
   features.features.robustBufferAccess = instance.validation() ? supported.robustBufferAccess : 0;
 
   VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features};

@@ -41,6 +41,10 @@ class Device {
   /// The device is this machine's processor: its memory is ours, mapped, and host passes pay off.
   bool is_cpu() const { return report_.type == VK_PHYSICAL_DEVICE_TYPE_CPU; }
 
+  /// Images of VK_FORMAT_BC7_UNORM_BLOCK and VK_FORMAT_BC7_SRGB_BLOCK can be filled and sampled
+  /// with filters.
+  bool samples_bc7() const { return samples_bc7_; }
+
   /// Index of a memory type among `allowed` with `needed`, preferring one that has `preferred` too.
   std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags needed,
                             VkMemoryPropertyFlags preferred) const;
@@ -82,6 +86,7 @@ class Device {
   VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
   std::filesystem::path cache_file_;
   bool labels_ = false;
+  bool samples_bc7_ = false;
   mutable std::mutex queue_mutex_;
   VkSemaphore timeline_ = VK_NULL_HANDLE;             // counts what the device has done
   mutable std::atomic<std::uint64_t> submitted_ = 0;  // written under queue_mutex_

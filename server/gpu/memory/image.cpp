@@ -59,12 +59,31 @@ std::uint32_t texel_bytes(VkFormat format) {
   }
 }
 
+VkDeviceSize level_bytes(VkFormat format, VkExtent2D size) {
+  if (format == VK_FORMAT_BC7_UNORM_BLOCK || format == VK_FORMAT_BC7_SRGB_BLOCK) {
+    return VkDeviceSize{(size.width + 3) / 4} * ((size.height + 3) / 4) * 16;
+  }
+  return VkDeviceSize{size.width} * size.height * texel_bytes(format);
+}
+
+VkDeviceSize packed_bytes(const ImageDesc& desc) {
+  VkDeviceSize bytes = 0;
+  for (std::uint32_t level = 0; level < desc.levels; ++level) {
+    bytes += level_bytes(desc.format, level_extent(desc, level)) * desc.layers;
+  }
+  return bytes;
+}
+
 const char* format_name(VkFormat format) {
   switch (format) {
     case VK_FORMAT_R8G8B8A8_UNORM:
       return "rgba8";
     case VK_FORMAT_R8G8B8A8_SRGB:
       return "rgba8 sRGB";
+    case VK_FORMAT_BC7_UNORM_BLOCK:
+      return "bc7";
+    case VK_FORMAT_BC7_SRGB_BLOCK:
+      return "bc7 sRGB";
     case VK_FORMAT_R32_UINT:
       return "r32ui";
     case VK_FORMAT_R32_SFLOAT:
@@ -224,8 +243,7 @@ void Image::upload(std::span<const std::byte> bytes) const {
     region.imageSubresource = {aspect_of(desc_.format), level, 0, desc_.layers};
     region.imageExtent = {size.width, size.height, 1};
     regions.push_back(region);
-    offset += static_cast<VkDeviceSize>(size.width) * size.height * texel_bytes(desc_.format) *
-              desc_.layers;
+    offset += level_bytes(desc_.format, size) * desc_.layers;
   }
   if (offset > bytes.size()) throw GpuError("too few bytes for the image " + desc_.name);
   device_->submit_once([&](VkCommandBuffer commands) {
@@ -246,7 +264,7 @@ std::vector<std::byte> Image::download(std::uint32_t layer) const {
 
 std::vector<std::byte> Image::download_level(std::uint32_t level, std::uint32_t layer) const {
   const VkExtent2D size = level_extent(desc_, level);
-  std::vector<std::byte> bytes(std::size_t{size.width} * size.height * texel_bytes(desc_.format));
+  std::vector<std::byte> bytes(level_bytes(desc_.format, size));
   const Buffer staging(*device_, desc_.name + " download", bytes.size(), 0, Memory::readback);
   device_->submit_once([&](VkCommandBuffer commands) {
     full_barrier(commands);

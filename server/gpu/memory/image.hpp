@@ -92,8 +92,14 @@ class Image {
   HostView host_;
 };
 
-/// Bytes per texel of the formats this renderer uses. @throws GpuError for any other
+/// Bytes per texel of the formats this renderer uses, but for compressed ones. @throws GpuError for
+/// any other
 std::uint32_t texel_bytes(VkFormat format);
+/// Bytes of a tightly packed level of that size. BC7 has 16 for each 4 x 4 texels, cut ones too.
+/// @throws GpuError as texel_bytes() does
+VkDeviceSize level_bytes(VkFormat format, VkExtent2D size);
+/// Bytes of all levels and layers, tightly packed. @throws GpuError as texel_bytes() does
+VkDeviceSize packed_bytes(const ImageDesc& desc);
 const char* format_name(VkFormat format);
 bool is_depth(VkFormat format);
 

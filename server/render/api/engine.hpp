@@ -23,6 +23,13 @@ enum class JpegEncoding {
   off,
 };
 
+/// Whether textures of KTX2 files stay compressed on the device, as BC7.
+enum class CompressedTextures {
+  automatic,  // on GPUs that read it: a processor samples RGBA faster
+  on,         // on any device that reads it
+  off,
+};
+
 struct EngineOptions {
   std::string device;           // part of a name, for choose_devices() a list; empty: the best
   std::string tracer = "auto";  // auto, or a protocol::TracerKind
@@ -33,6 +40,7 @@ struct EngineOptions {
   std::filesystem::path shader_folder;  // GLSL compiled at run time; empty: the embedded shaders.
                                         // Host kernels, which are not made of them, are off then.
   JpegEncoding jpeg = JpegEncoding::automatic;
+  CompressedTextures compressed_textures = CompressedTextures::automatic;
 };
 
 /// What came of shader files that had changed.

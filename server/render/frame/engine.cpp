@@ -62,6 +62,16 @@ gpu::Buffer jpeg_tables_for(const gpu::Device& device, const EngineOptions& opti
   return encodes && !reloads ? make_jpeg_tables(device) : gpu::Buffer();
 }
 
+bool compresses_textures(const gpu::Device& device, CompressedTextures wanted) {
+  if (!device.samples_bc7()) return false;
+  return wanted == CompressedTextures::automatic ? !device.is_cpu()
+                                                 : wanted == CompressedTextures::on;
+}
+
+UploadChoices upload_choices(const Engine::Parts& parts) {
+  return {parts.host_kernels, parts.compressed_textures};
+}
+
 scene::Scene make_empty_scene() {
   scene::Scene scene;
   scene.name = "empty";
@@ -92,7 +102,8 @@ Engine::Parts::Parts(const EngineOptions& options)
       around(make_environment_sampler(device, true)),
       clamped(make_environment_sampler(device, false)),
       info{device.report().name, device.report().driver, device_type(device.report().type)},
-      host_kernels(options.host_kernels && !shader_reload) {}
+      host_kernels(options.host_kernels && !shader_reload),
+      compressed_textures(compresses_textures(device, options.compressed_textures)) {}
 
 Engine::Engine(const EngineOptions& options)
     : options_(options), parts_(std::make_shared<Parts>(options)) {}
@@ -184,7 +195,7 @@ std::shared_ptr<const SceneResources> Engine::upload_images(
   if (first && &first->environment->device() != &parts->device) first = nullptr;
   return with_device(parts,
                      std::make_shared<const SceneResources>(
-                         parts->device, parts->programs, parts->host_kernels, std::move(scene),
+                         parts->device, parts->programs, upload_choices(*parts), std::move(scene),
                          std::move(around), *parts->tracer, report, image_done, first));
 }
 
@@ -195,7 +206,7 @@ std::shared_ptr<const SceneResources> Engine::empty_scene() {
     auto black =
         std::make_shared<const scene::Environment>(scene::constant_environment(glm::vec3(0.0f)));
     parts->empty = std::make_shared<const SceneResources>(
-        parts->device, parts->programs, parts->host_kernels,
+        parts->device, parts->programs, upload_choices(*parts),
         std::make_shared<const scene::Scene>(make_empty_scene()),
         parts->environments.get(std::move(black)), *parts->tracer, [](std::string_view, float) {},
         [](std::size_t) {});

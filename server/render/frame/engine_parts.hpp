@@ -31,6 +31,7 @@ struct Engine::Parts {
   gpu::Sampler clamped;
   DeviceInfo info;
   bool host_kernels;
+  bool compressed_textures;
   std::mutex empty_mutex;
   std::shared_ptr<const SceneResources> empty;  // made when the first renderer asks for it
 };

@@ -11,6 +11,7 @@
 #include "render/resources/heap_textures.hpp"
 #include "render/resources/lights/light_table.hpp"
 #include "render/resources/placement.hpp"
+#include "render/resources/sampled_texture.hpp"
 #include "scene/gltf/materials/images.hpp"
 #include "scene/gltf/materials/layer_table.hpp"
 #include "scene/image/mipmaps.hpp"
@@ -106,18 +107,6 @@ gpu::Image constant_texture(const gpu::Device& device, const char* name,
   return image;
 }
 
-gpu::Image make_texture(const gpu::Device& device, const scene::Image& from,
-                        std::span<const std::uint8_t> pixels) {
-  gpu::ImageDesc desc{.name = from.name.empty() ? "texture" : from.name};
-  desc.extent = {from.width, from.height};
-  desc.format = from.srgb ? VK_FORMAT_R8G8B8A8_SRGB : VK_FORMAT_R8G8B8A8_UNORM;
-  desc.usage = VK_IMAGE_USAGE_SAMPLED_BIT;
-  desc.levels = from.levels;
-  gpu::Image image(device, desc);
-  image.upload(std::as_bytes(pixels));
-  return image;
-}
-
 /// How often a load that waits tells that it goes on, which may end it.
 constexpr std::chrono::milliseconds progress_interval{50};
 
@@ -137,7 +126,7 @@ struct StopAtEnd {
 }  // namespace
 
 SceneResources::SceneResources(const gpu::Device& device, const Programs& programs,
-                               bool host_kernels, std::shared_ptr<const scene::Scene> source,
+                               UploadChoices choices, std::shared_ptr<const scene::Scene> source,
                                std::shared_ptr<const LitEnvironment> around,
                                const tracing::RayTracer& tracer, const UploadProgress& progress,
                                const ImageDone& image_done,
@@ -147,10 +136,11 @@ SceneResources::SceneResources(const gpu::Device& device, const Programs& progra
       emission_means(*scene),
       device_(device),
       programs_(programs),
+      compressed_textures_(choices.compressed_textures),
       white_(constant_texture(device, "white", {255, 255, 255, 255})),
       flat_normal_(constant_texture(device, "flat normal", {128, 128, 255, 255})) {
   progress("tables", 0.1f);
-  upload_tables(device, host_kernels, first.get());
+  upload_tables(device, choices.host_kernels, first.get());
   make_samplers();
   // Beside the textures, which one thread copies.
   std::stop_source stop;
@@ -200,10 +190,7 @@ std::uint64_t SceneResources::bytes_of_its_own() const {
   }
   const std::lock_guard lock(sampled_mutex_);
   if (material_sets_) sum += material_sets_->blocks.size() + material_sets_->layer_blocks.size();
-  for (const gpu::Image& image : images_) {
-    const auto [width, height] = image.desc().extent;
-    sum += scene::mip_chain_bytes(width, height);
-  }
+  for (const gpu::Image& image : images_) sum += gpu::packed_bytes(image.desc());
   return sum;
 }
 
@@ -287,7 +274,7 @@ void SceneResources::upload_textures(const UploadProgress& progress, const Image
     const scene::ImagePixels pixels(images[i], first);
     heap.add(i, pixels.get());
     emission_means.add(*scene, i, pixels.get());
-    if (!device_.is_cpu()) images_.push_back(make_texture(device_, images[i], pixels.get()));
+    if (!device_.is_cpu()) add_sampled_texture(images[i], pixels.get());
     image_done(i);
   }
   texture_heap = heap.finish();
@@ -306,8 +293,13 @@ void SceneResources::upload_emissive_triangles() {
 void SceneResources::make_missing_images() const {
   while (images_.size() < scene->images.size()) {
     const scene::Image& image = scene->images[images_.size()];
-    images_.push_back(make_texture(device_, image, scene::ImagePixels(image, 0).get()));
+    add_sampled_texture(image, scene::ImagePixels(image, 0).get());
   }
+}
+
+void SceneResources::add_sampled_texture(const scene::Image& image,
+                                         std::span<const std::uint8_t> pixels) const {
+  images_.push_back(make_sampled_texture(device_, image, pixels, compressed_textures_));
 }
 
 void SceneResources::make_samplers() {

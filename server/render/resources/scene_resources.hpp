@@ -41,13 +41,17 @@ struct MaterialSets {
 /// Called for every image whose pixels are not needed any more.
 using ImageDone = std::function<void(std::size_t image)>;
 
+struct UploadChoices {
+  bool host_kernels;         // passes that have one run theirs, so that no shader reads the scene
+  bool compressed_textures;  // of KTX2 files stay compressed, for samplers
+};
+
 class SceneResources {
  public:
-  /// `host_kernels`: whether passes that have one run theirs, so that no shader reads the scene.
   /// `first`: of the same scene without its textures, on the same device: its tables of geometry
   /// are shared, as is its acceleration structure where rays meet the same; nothing else of it
   /// stays otherwise. Null: there is none.
-  SceneResources(const gpu::Device& device, const Programs& programs, bool host_kernels,
+  SceneResources(const gpu::Device& device, const Programs& programs, UploadChoices choices,
                  std::shared_ptr<const scene::Scene> scene,
                  std::shared_ptr<const LitEnvironment> environment,
                  const tracing::RayTracer& tracer, const UploadProgress& progress,
@@ -101,6 +105,7 @@ class SceneResources {
   void make_samplers();
   void list_draws();
   void make_missing_images() const;
+  void add_sampled_texture(const scene::Image& image, std::span<const std::uint8_t> pixels) const;
 
   void write_slots(gpu::DescriptorWriter& writer, std::uint32_t first_binding,
                    std::span<const shared::TextureSlot* const> slots,
@@ -108,6 +113,7 @@ class SceneResources {
 
   const gpu::Device& device_;
   const Programs& programs_;
+  const bool compressed_textures_;
   std::shared_ptr<const Geometry> geometry_;
   std::uint64_t first_bytes_ = 0;  // of a first view that stays with the structure
   std::vector<shared::Mesh> meshes_;

@@ -38,6 +38,19 @@ TEST(Formats, HaveTexelSize) {
   EXPECT_FALSE(is_depth(VK_FORMAT_R32_SFLOAT));
 }
 
+TEST(Formats, CompressedLevelsAreWholeBlocks) {
+  EXPECT_EQ(level_bytes(VK_FORMAT_R8G8B8A8_SRGB, {5, 3}), 60u);
+  EXPECT_EQ(level_bytes(VK_FORMAT_BC7_SRGB_BLOCK, {8, 4}), 32u);
+  EXPECT_EQ(level_bytes(VK_FORMAT_BC7_UNORM_BLOCK, {5, 3}), 32u);
+  EXPECT_EQ(level_bytes(VK_FORMAT_BC7_UNORM_BLOCK, {1, 1}), 16u);
+  ImageDesc desc{.name = "levels", .extent = {8, 8}, .format = VK_FORMAT_BC7_UNORM_BLOCK};
+  desc.levels = 4;
+  EXPECT_EQ(packed_bytes(desc), 64u + 16u + 16u + 16u);
+  desc.format = VK_FORMAT_R8G8B8A8_UNORM;
+  desc.layers = 6;
+  EXPECT_EQ(packed_bytes(desc), 6u * 4u * (64u + 16u + 4u + 1u));
+}
+
 TEST(Reflect, RejectsInvalidSpirv) {
   constexpr std::array<std::uint32_t, 4> words{1, 2, 3, 4};
   try {
