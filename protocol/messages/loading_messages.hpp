@@ -8,6 +8,7 @@
 #include "protocol/json/fields.hpp"
 #include "protocol/messages/animation_messages.hpp"
 #include "protocol/messages/edit_messages.hpp"
+#include "protocol/messages/kinds.hpp"
 #include "protocol/messages/session_messages.hpp"
 
 // Messages about scenes: the catalogue, loading, the loaded scene.
@@ -17,11 +18,14 @@ namespace heliograph::protocol {
 struct SceneFile {
   std::string name;
   std::uint64_t bytes = 0;
+  bool uploaded = false;
 
   static constexpr auto fields() {
     return std::tuple{
         field("name", &SceneFile::name, "Name for scene.load."),
         field("bytes", &SceneFile::bytes, "Size of the file.").unit("bytes"),
+        field("uploaded", &SceneFile::uploaded,
+              "Whether it was uploaded: then DELETE /api/v1/scenes/NAME deletes it."),
     };
   }
   bool operator==(const SceneFile&) const = default;
@@ -73,6 +77,21 @@ struct SceneCancelled {
     };
   }
   bool operator==(const SceneCancelled&) const = default;
+};
+
+struct UploadsChanged {
+  UploadKind kind = UploadKind::scene;
+  std::string name;
+  bool deleted = false;
+
+  static constexpr auto fields() {
+    return std::tuple{
+        field("kind", &UploadsChanged::kind, "What the file is."),
+        field("name", &UploadsChanged::name, "Its name."),
+        field("deleted", &UploadsChanged::deleted, "Whether it was deleted; else uploaded."),
+    };
+  }
+  bool operator==(const UploadsChanged&) const = default;
 };
 
 struct Bounds {

@@ -185,11 +185,14 @@ struct LightsChanged {
 struct EnvironmentFile {
   std::string name;
   std::uint64_t bytes = 0;
+  bool uploaded = false;
 
   static constexpr auto fields() {
     return std::tuple{
         field("name", &EnvironmentFile::name, "Name for environment.set."),
         field("bytes", &EnvironmentFile::bytes, "Size of the file.").unit("bytes"),
+        field("uploaded", &EnvironmentFile::uploaded,
+              "Whether it was uploaded: then DELETE /api/v1/environments/NAME deletes it."),
     };
   }
   bool operator==(const EnvironmentFile&) const = default;

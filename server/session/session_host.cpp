@@ -1,7 +1,9 @@
 #include "session/session_host.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <exception>
 #include <string>
 #include <string_view>
@@ -11,6 +13,7 @@
 #include "session/commands/commands.hpp"
 #include "session/edits/edited_parts.hpp"
 #include "session/edits/texture_edits.hpp"
+#include "session/library/upload_store.hpp"
 
 namespace heliograph::session {
 
@@ -170,6 +173,27 @@ Result<SceneThumbnails::File> SessionHost::scene_thumbnail(const std::string& sc
   Result<SceneThumbnails::File> found = thumbnails_.get(scene);
   if (thumbnails_.has_work()) idle_check_.notify();
   return found;
+}
+
+bool SessionHost::was_uploaded(const CatalogueEntry& entry) const {
+  return std::ranges::count(options_.upload_roots, entry.root) > 0 && is_upload(entry);
+}
+
+void SessionHost::forget_thumbnail(protocol::UploadKind kind, const std::string& name) {
+  if (kind == protocol::UploadKind::environment) return environments_.forget_thumbnail(name);
+  if (kind != protocol::UploadKind::scene) return;
+  const Result<CatalogueEntry> entry = catalogue_.find(name);
+  if (entry && was_uploaded(*entry)) thumbnails_.forget(*entry);
+}
+
+/// Those of several files are all sent; a newer change of a file replaces one that is queued.
+void SessionHost::uploads_changed(const protocol::UploadsChanged& change) {
+  using Notification = protocol::notifications::uploads_changed;
+  loader_.files_changed();
+  const std::string text = protocol::make_notification<Notification>(change);
+  const std::string key =
+      fmt::format("{} {} {}", Notification::name, protocol::enum_name(change.kind), change.name);
+  for (const auto& session : sessions_.all()) session->viewers().send_all(text, key);
 }
 
 /// In a session of its own, which opens the scene as any other does.

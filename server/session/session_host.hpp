@@ -31,6 +31,7 @@ struct HostOptions {
   std::vector<std::filesystem::path> scene_roots;
   std::vector<std::filesystem::path> environment_roots;  // beside them
   std::vector<std::filesystem::path> image_roots;        // of textures
+  std::vector<std::filesystem::path> upload_roots;       // those of all these that hold uploads
   std::optional<std::filesystem::path> environment;      // for every scene, instead of its own
   scene::ImportLimits import_limits;
   std::uint64_t scene_cache_bytes = 1ull << 30;
@@ -67,6 +68,12 @@ class SessionHost {
   /// The images that may take the place of textures; see list_images.
   const SceneCatalogue& images() const { return images_; }
   SceneExporter& exporter() { return exporter_; }
+  /// Whether a file of the catalogues was uploaded, and not put there by others.
+  bool was_uploaded(const CatalogueEntry& entry) const;
+  /// To be called before an upload is deleted: its small image goes with it.
+  void forget_thumbnail(protocol::UploadKind kind, const std::string& name);
+  /// To be called after an upload or its deletion: memory is freed, and all viewers are told.
+  void uploads_changed(const protocol::UploadsChanged& change);
   /// The small image of a scene; see SceneThumbnails::get.
   protocol::Result<SceneThumbnails::File> scene_thumbnail(const std::string& scene);
   /// Null: there are none.

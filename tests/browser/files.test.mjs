@@ -137,7 +137,7 @@ open.test("an environment is uploaded, shown, and found by its thumbnail", async
   assert.equal(await page.locator("select[name=environment]").inputValue(), "Blue_sky");
   await page.getByRole("button", { name: "Show thumbnails of all environments" }).click();
   const tiles = page.getByRole("group", { name: "Environments" });
-  const tile = tiles.getByRole("button", { name: "Blue_sky" });
+  const tile = tiles.getByRole("button", { name: "Blue_sky", exact: true });
   assert.equal(await tile.getAttribute("aria-pressed"), "true");
   await eventually(
     () => tile.locator("img").evaluate((image) => image.naturalWidth === 160),
@@ -154,6 +154,94 @@ open.test("an environment is uploaded, shown, and found by its thumbnail", async
   await (await chooser).setFiles({ name: "cut.hdr", mimeType: "", buffer: panorama.subarray(0, 90) });
   await page.locator(".toast", { hasText: "cut.hdr is incomplete: the file ends early." }).waitFor();
   await open.server.call("environment.set", { name: null });
+});
+
+async function put(kind, name, body) {
+  const url = new URL(`api/v1/${kind}/${name}`, open.server.url);
+  assert.equal((await fetch(url, { method: "PUT", body })).status, 201);
+}
+
+const galleryOf = (page, kind) => page.getByRole("button", { name: `Show thumbnails of all ${kind}` });
+
+/** Deletes an upload of this list, and gives what has the focus then. */
+async function deleteByKeyboard(list, name) {
+  await list.getByRole("button", { name: `Delete ${name}` }).press("Enter");
+  await list.getByRole("button", { name: `Confirm: delete ${name}` }).press("Enter");
+  await list.getByText(name, { exact: true }).waitFor({ state: "detached" });
+  await eventually(
+    () => list.evaluate((node) => node.contains(document.activeElement)),
+    "the focus in the list",
+  );
+}
+
+open.test("uploads are deleted by keyboard after a question, for all viewers", async () => {
+  for (const name of ["doomed", "kept"]) {
+    await put("scenes", name, mirror);
+    await put("environments", name, panorama);
+    await put("images", name, redImage);
+  }
+  // The browser reports failed requests, such as for the image of what was deleted just now.
+  const { page } = await open.watch({ expectErrors: true });
+  const other = await open.watch({ expectErrors: true });
+  await unfoldAll(page);
+  for (const kind of ["scenes", "environments"]) {
+    await galleryOf(page, kind).click();
+    await galleryOf(other.page, kind).click();
+  }
+  const scenes = page.locator("#scene-gallery");
+  assert.equal(await scenes.getByRole("button", { name: "Delete shadow_objects" }).count(), 0);
+  const remove = scenes.getByRole("button", { name: "Delete doomed" });
+  await remove.press("Enter");
+  await scenes.getByRole("button", { name: "Confirm: delete doomed" }).waitFor();
+  await screenshot(page, "delete_upload");
+  assert.deepEqual(await seriousFindings(page), []);
+  await page.keyboard.press("Tab");
+  await scenes.getByRole("button", { name: "Delete doomed", exact: true }).waitFor();
+  await deleteByKeyboard(scenes, "doomed");
+  await deleteByKeyboard(page.locator("#environment-gallery"), "doomed");
+  await deleteByKeyboard(page.getByRole("list", { name: "Uploaded images" }), "doomed");
+  await page.locator(".toast", { hasText: "doomed was deleted" }).waitFor();
+  for (const gallery of ["#scene-gallery", "#environment-gallery"]) {
+    await other.page.locator(gallery).getByText("kept", { exact: true }).waitFor();
+    await other.page
+      .locator(gallery)
+      .getByText("doomed", { exact: true })
+      .waitFor({ state: "detached" });
+  }
+  for (const [method, kind] of [
+    ["scene.list", "scenes"],
+    ["environment.list", "environments"],
+    ["images.list", "images"],
+  ]) {
+    const names = (await open.server.call(method))[kind].map(({ name }) => name);
+    assert.ok(names.includes("kept") && !names.includes("doomed"), `${kind}: ${names}`);
+  }
+});
+
+open.test("a scene that is shown stays when it is deleted, and a refusal is told", async () => {
+  await put("scenes", "shown", mirror);
+  await open.server.call("scene.load", { name: "shown" });
+  const { page } = await open.watch({ expectErrors: true }); // the browser reports failed requests
+  await galleryOf(page, "scenes").click();
+  const scenes = page.locator("#scene-gallery");
+  await page.route("**/api/v1/scenes/shown", (route) =>
+    route.fulfill({ status: 403, body: "This token is read-only and cannot delete uploads.\n" }),
+  );
+  const remove = scenes.getByRole("button", { name: "Delete shown" });
+  await remove.press("Enter");
+  await remove.press("Enter");
+  await page
+    .locator(".toast", { hasText: "shown was not deleted: This token is read-only" })
+    .waitFor();
+  assert.equal(await remove.getAttribute("aria-label"), "Delete shown");
+  await page.unroute("**/api/v1/scenes/shown");
+  await deleteByKeyboard(scenes, "shown");
+  assert.equal(await page.locator("select[name=scene]").inputValue(), "shown");
+  assert.equal((await open.server.call("scene.info")).name, "shown");
+  await page.reload();
+  await firstFrame(page);
+  assert.equal(await page.locator("select[name=scene]").inputValue(), "shown");
+  await open.server.call("scene.load", { name: "shadow_objects" });
 });
 
 empty.test("a server without scenes says how to bring one, and shows it", async () => {

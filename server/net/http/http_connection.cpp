@@ -239,6 +239,9 @@ class HttpConnection : public Connection, public std::enable_shared_from_this<Ht
     if (const auto session = mjpeg_stream_session(request); session && request.method == "GET") {
       return start_mjpeg(request, *session);
     }
+    if (context_.uploads && request.method == "DELETE" && upload_address(request.path)) {
+      return send(delete_upload(context_, request));
+    }
     stream_.next_layer().expires_never();
     const auto pending =
         std::make_shared<protocol::PendingAnswer>(max_outgoing_bytes, context_.answer_memory);

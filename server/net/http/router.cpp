@@ -227,7 +227,7 @@ void Router::handle(const HttpRequest& request, const Pending& pending, Reply re
   const auto scene = between(scenes_prefix, request.path, scene_suffix);
   if (scene && reads) return reply(scene_thumbnail(*scene));
   if (!options_.uploads.empty() && upload_address(request.path)) {
-    return reply(method_not_allowed("PUT"));
+    return reply(method_not_allowed("PUT, DELETE"));
   }
   if (!reads) return reply(method_not_allowed("GET"));
   if (const auto session = between(sessions_prefix, request.path, exported_suffix)) {

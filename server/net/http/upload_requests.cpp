@@ -17,16 +17,23 @@ using boost::system::error_code;
 
 constexpr std::chrono::minutes max_upload_duration{10};
 
-/// `length`: of the body, bytes, where the request tells it.
-std::optional<HttpResponse> upload_refusal(const ServerContext& context, const HttpRequest& request,
-                                           std::optional<std::uint64_t> length) {
+/// Why a client may not change the uploads. `what` it wants to do to them: "upload".
+std::optional<HttpResponse> change_refusal(const ServerContext& context, const HttpRequest& request,
+                                           const std::string& what) {
   if (context.certificate && !request.secure) return text_response(400, "Use HTTPS.");
   Admission admission = context.access.admit(request);
   if (admission.refusal) return *std::move(admission.refusal);
   if (admission.role != Role::control) {
-    return text_response(403, "This token is read-only and cannot upload.");
+    return text_response(403, "This token is read-only and cannot " + what + ".");
   }
   if (context.draining) return retry_later("The server is shutting down.");
+  return std::nullopt;
+}
+
+/// `length`: of the body, bytes, where the request tells it.
+std::optional<HttpResponse> upload_refusal(const ServerContext& context, const HttpRequest& request,
+                                           std::optional<std::uint64_t> length) {
+  if (auto refused = change_refusal(context, request, "upload")) return refused;
   const std::optional<UploadAddress> address = upload_address(request.path);
   if (!address) {
     return text_response(404,
@@ -81,6 +88,24 @@ std::optional<HttpResponse> UploadReceiver::begin(const HttpRequest& request,
   return std::nullopt;
 }
 
+HttpResponse delete_upload(const ServerContext& context, const HttpRequest& request) {
+  if (auto refused = change_refusal(context, request, "delete uploads")) return *std::move(refused);
+  const UploadAddress address = *upload_address(request.path);
+  const std::string name(address.name);
+  context.host.forget_thumbnail(address.kind, name);
+  const auto removed = context.uploads->remove(address.kind, name);
+  if (removed) {
+    context.host.uploads_changed({.kind = address.kind, .name = name, .deleted = true});
+    return {.status = 204, .content_type = {}};
+  }
+  // A file of this name that another has put there stays.
+  const bool missing = removed.error().code == protocol::ErrorCode::not_found;
+  if (missing && context.router.name_conflict(address)) {
+    return text_response(409, "It was not uploaded: only uploads can be deleted.");
+  }
+  return error_response(removed.error());
+}
+
 void UploadReceiver::receive(ClientStream& stream, beast::flat_buffer& buffer, Answer answer) {
   stream.next_layer().expires_after(handshake_timeout);
   http::async_read_some(
@@ -108,8 +133,9 @@ void UploadReceiver::received(error_code error, ClientStream& stream, beast::fla
 void UploadReceiver::check(ClientStream& stream, Answer answer) {
   context_.uploads->finish(
       std::exchange(incoming_, nullptr),
-      [executor = stream.get_executor(),
+      [&host = context_.host, executor = stream.get_executor(),
        answer = std::move(answer)](const protocol::Result<session::UploadedFile>& accepted) {
+        if (accepted) host.uploads_changed({.kind = accepted->kind, .name = accepted->name});
         HttpResponse response =
             accepted ? upload_response(*accepted) : error_response(accepted.error());
         run_later(executor, [answer, response = std::move(response)]() mutable {

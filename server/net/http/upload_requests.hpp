@@ -46,4 +46,7 @@ class UploadReceiver {
   std::chrono::steady_clock::time_point deadline_;
 };
 
+/// Deletes the upload at the address of a request: 204. It stays where it is shown.
+HttpResponse delete_upload(const ServerContext& context, const HttpRequest& request);
+
 }  // namespace heliograph::net

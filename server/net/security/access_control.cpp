@@ -153,7 +153,7 @@ std::optional<HttpResponse> AccessControl::preflight(const HttpRequest& request)
   if (auto refused = check_origin(request)) return refused;
   HttpResponse response{.status = 204, .content_type = {}, .body = {}, .headers = {}};
   response.headers = {
-      {"Access-Control-Allow-Methods", "GET, HEAD, POST, PUT"},
+      {"Access-Control-Allow-Methods", "GET, HEAD, POST, PUT, DELETE"},
       {"Access-Control-Allow-Headers", "Authorization, Content-Type, If-None-Match"},
       {"Access-Control-Max-Age", "600"},
   };

@@ -25,7 +25,8 @@ namespace {
 EnvironmentState describe_environment(SessionHost& host, const Session& session) {
   EnvironmentState state = session.scene().environment();
   for (const CatalogueEntry& entry : host.environments().list()) {
-    state.environments.push_back({.name = entry.name, .bytes = entry.bytes});
+    state.environments.push_back(
+        {.name = entry.name, .bytes = entry.bytes, .uploaded = host.was_uploaded(entry)});
   }
   return state;
 }

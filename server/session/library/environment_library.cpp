@@ -107,6 +107,11 @@ void EnvironmentLibrary::thumbnail(const std::string& name, Thumbnail done) {
   }
 }
 
+void EnvironmentLibrary::forget_thumbnail(const std::string& name) {
+  // Where too many wait it stays, and gives way to others.
+  (void)thumbnail_maker_.post([this, name] { thumbnails_.erase(name); });
+}
+
 Result<std::vector<std::uint8_t>> EnvironmentLibrary::make_thumbnail(const CatalogueEntry& entry) {
   try {
     const scene::SourceFile file = scene::examine_file(entry.path);

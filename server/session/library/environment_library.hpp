@@ -36,6 +36,8 @@ class EnvironmentLibrary {
   /// A small PNG of an environment, tone mapped; made once for each version of its file. `done` is
   /// called once, here or on a thread of its own.
   void thumbnail(const std::string& name, Thumbnail done);
+  /// Frees the image of an environment whose file is gone.
+  void forget_thumbnail(const std::string& name);
   /// Called with the index of the device when prefiltering throws render::DeviceLost. Set before
   /// the first load.
   void on_device_loss(std::function<void(std::size_t)> callback) {

@@ -81,6 +81,12 @@ void SceneCache::count_miss() {
 
 bool SceneCache::trim() {
   const std::lock_guard lock(mutex_);
+  for (auto entry = entries_.begin(); entry != entries_.end();) {
+    const auto next = std::next(entry);
+    // No request finds it any more.
+    if (!entry->shown() && !unchanged(entry->sources)) drop(entry);
+    entry = next;
+  }
   for (auto entry = entries_.begin(); entry != entries_.end() && totals_.bytes > max_bytes_;) {
     const auto next = std::next(entry);
     if (!entry->shown()) {

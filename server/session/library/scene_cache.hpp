@@ -62,7 +62,8 @@ class SceneCache {
   void count_hit();
   void count_miss();
 
-  /// Drops scenes that are not shown until the rest is within the limit. False if it is not.
+  /// Drops scenes that are not shown: those whose files have changed or are gone, and others until
+  /// the rest is within the limit. False if it is not.
   bool trim();
   CacheTotals totals() const;
 

@@ -77,6 +77,16 @@ Result<SceneThumbnails::File> SceneThumbnails::get(const std::string& scene) {
   return protocol::error::not_ready("is rendered when the server has nothing else to do");
 }
 
+void SceneThumbnails::forget(const CatalogueEntry& entry) {
+  const std::filesystem::path file = file_of(entry);
+  std::error_code ignored;
+  if (!folder_.empty()) std::filesystem::remove(file, ignored);
+  const std::lock_guard lock(mutex_);
+  kept_.erase(file);
+  failed_.erase(file);
+  std::erase(waiting_, entry.name);
+}
+
 bool SceneThumbnails::has_work() const {
   const std::lock_guard lock(mutex_);
   return !waiting_.empty();
@@ -96,11 +106,19 @@ void SceneThumbnails::render_next() {
   render_(scene, [this, scene, file](const Result<File>& image) { keep(scene, file, image); });
 }
 
+/// Whether it is the image of the file that the scene has now: it may be gone, or another one.
+bool SceneThumbnails::is_current(const std::string& scene,
+                                 const std::filesystem::path& file) const {
+  const Result<CatalogueEntry> entry = catalogue_.find(scene);
+  return entry && file_of(*entry) == file;
+}
+
 /// What fails for want of room is rendered when it is asked for again.
 void SceneThumbnails::keep(const std::string& scene, const std::filesystem::path& file,
                            const Result<File>& image) {
+  const bool current = is_current(scene, file);
   bool written = false;
-  if (image && !folder_.empty()) {
+  if (image && current && !folder_.empty()) {
     try {
       write_file(file, *image);
       written = true;
@@ -110,6 +128,7 @@ void SceneThumbnails::keep(const std::string& scene, const std::filesystem::path
   }
   const std::lock_guard lock(mutex_);
   rendering_.clear();
+  if (!current) return;
   if (image && !written) {
     if (kept_.size() >= most_in_memory) kept_.clear();
     kept_[file] = *image;

@@ -30,6 +30,8 @@ class SceneThumbnails {
   /// The image of a scene, as its file is now. Error not_ready: it is rendered later; not_found:
   /// there is no such scene; invalid: it cannot be loaded.
   protocol::Result<File> get(const std::string& scene);
+  /// Deletes the image of a scene whose file is about to be deleted.
+  void forget(const CatalogueEntry& entry);
   /// Whether images that were asked for are still to be rendered.
   bool has_work() const;
   /// Begins with the next of these, unless one is being rendered.
@@ -37,6 +39,7 @@ class SceneThumbnails {
 
  private:
   std::filesystem::path file_of(const CatalogueEntry& entry) const;
+  bool is_current(const std::string& scene, const std::filesystem::path& file) const;
   void keep(const std::string& scene, const std::filesystem::path& file,
             const protocol::Result<File>& image);
 

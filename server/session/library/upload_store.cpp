@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cstring>
 #include <fstream>
+#include <span>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -59,6 +60,28 @@ std::string_view described(UploadKind kind) {
   return "an image";
 }
 
+/// Those that files of a kind have, in the order of their precedence.
+std::span<const std::string_view> extensions_of(UploadKind kind) {
+  static constexpr std::array<std::string_view, 1> scenes{".glb"};
+  static constexpr std::array<std::string_view, 2> environments{".hdr", ".exr"};
+  static constexpr std::array<std::string_view, 5> images{".png", ".jpg", ".jpeg", ".webp",
+                                                          ".ktx2"};
+  switch (kind) {
+    case UploadKind::scene:
+      return scenes;
+    case UploadKind::environment:
+      return environments;
+    case UploadKind::image:
+      break;
+  }
+  return images;
+}
+
+protocol::Error invalid_name(UploadKind kind) {
+  return protocol::error::invalid("name", "is not a valid name of " + std::string(described(kind)),
+                                  "1 to 64 letters, digits, _ and -");
+}
+
 /// The fault in the header of a binary glTF file (specification section 4.4.2), or nothing.
 std::string_view header_fault(const fs::path& file) {
   std::array<unsigned char, glb_header_bytes> header{};
@@ -97,11 +120,7 @@ UploadStore::UploadStore(UploadOptions options)
 protocol::Result<std::shared_ptr<UploadStore::Incoming>> UploadStore::begin(UploadKind kind,
                                                                             const std::string& name,
                                                                             std::uint64_t bytes) {
-  if (!is_valid_name(name)) {
-    return protocol::error::invalid("name",
-                                    "is not a valid name of " + std::string(described(kind)),
-                                    "1 to 64 letters, digits, _ and -");
-  }
+  if (!is_valid_name(name)) return invalid_name(kind);
   if (bytes > options_.max_bytes) {
     return protocol::error::too_large("body", "is too large",
                                       std::to_string(options_.max_bytes) + " bytes");
@@ -184,9 +203,35 @@ void UploadStore::accept_image(Incoming& incoming, UploadedFile& accepted) {
   const std::string_view own = image_extension(incoming.path());
   incoming.keep_as(images_ / (incoming.name() + std::string(own)));
   std::error_code ignored;
-  for (const std::string_view other : {".png", ".jpg", ".webp", ".ktx2"}) {
+  for (const std::string_view other : extensions_of(incoming.kind())) {
     if (other != own) fs::remove(images_ / (incoming.name() + std::string(other)), ignored);
   }
+}
+
+protocol::Result<void> UploadStore::remove(UploadKind kind, const std::string& name) {
+  if (!is_valid_name(name)) return invalid_name(kind);
+  const std::lock_guard lock(mutex_);
+  bool removed = false;
+  // All of them: none appears in the place of another.
+  for (const std::string_view extension : extensions_of(kind)) {
+    std::error_code error;
+    removed |= fs::remove(folder_of(kind) / (name + std::string(extension)), error);
+    if (!error) continue;
+    log_error({}, "the upload " + name + " could not be deleted: " + error.message());
+    return protocol::error::internal();
+  }
+  if (!removed) return protocol::error::not_found("name", "is not the name of an upload");
+  log_info({}, "the upload " + name + " was deleted");
+  return {};
+}
+
+const fs::path& UploadStore::folder_of(UploadKind kind) const {
+  if (kind == UploadKind::scene) return scenes_;
+  return kind == UploadKind::environment ? environments_ : images_;
+}
+
+bool is_upload(const CatalogueEntry& entry) {
+  return is_valid_name(entry.name) && entry.path.extension() != ".gltf";
 }
 
 void UploadStore::stop() {

@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "protocol/messages/kinds.hpp"
 #include "protocol/result.hpp"
 #include "session/library/import_process.hpp"
+#include "session/library/scene_catalogue.hpp"
 #include "session/worker.hpp"
 
 namespace heliograph::session {
@@ -21,7 +23,7 @@ struct UploadOptions {
   std::vector<std::string> import_arguments;  // see ImportProcess
 };
 
-enum class UploadKind { scene, environment, image };
+using protocol::UploadKind;
 
 struct UploadedFile {
   UploadKind kind = UploadKind::scene;
@@ -60,6 +62,10 @@ class UploadStore {
   /// nothing of the upload is left but the accepted scene.
   void finish(std::shared_ptr<Incoming> incoming,
               std::function<void(protocol::Result<UploadedFile>)> done);
+  /// Deletes an accepted file: its bytes count no longer. Who has it open still reads it. An upload
+  /// of this name that is being received or checked is accepted afterwards.
+  /// Error invalid: there are no such names; not_found: no upload has this name.
+  protocol::Result<void> remove(UploadKind kind, const std::string& name);
   /// Ends the thread and the import that runs; `done` is not called any more.
   void stop();
 
@@ -68,6 +74,7 @@ class UploadStore {
   void accept_scene(Incoming& incoming, UploadedFile& accepted);
   void accept_environment(Incoming& incoming, UploadedFile& accepted);
   void accept_image(Incoming& incoming, UploadedFile& accepted);
+  const std::filesystem::path& folder_of(UploadKind kind) const;
   std::uint64_t bytes_kept() const;
 
   const UploadOptions options_;
@@ -81,6 +88,10 @@ class UploadStore {
   ImportProcess importer_;
   Worker checker_;
 };
+
+/// Whether a file that a catalogue found in a folder of the store is one that `UploadStore::remove`
+/// deletes: none that was put there in other ways, such as one in a folder of its own.
+bool is_upload(const CatalogueEntry& entry);
 
 class UploadStore::Incoming {
  public:

@@ -233,7 +233,8 @@ class FewViewers(ServerTestCase):
             self.good["Origin"], **{"Access-Control-Request-Private-Network": "true"})
         self.assertEqual((status, body), (204, b""))
         self.assert_shared(headers)
-        self.assertIn("POST", headers["access-control-allow-methods"])
+        for method in ("POST", "PUT", "DELETE"):
+            self.assertIn(method, headers["access-control-allow-methods"].split(", "))
         self.assertIn("Authorization", headers["access-control-allow-headers"])
         self.assertEqual(headers["access-control-allow-private-network"], "true")
         status, headers, _ = self.preflight("https://evil.example")

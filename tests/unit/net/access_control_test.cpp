@@ -111,6 +111,8 @@ TEST(AccessControl, PreflightOfAllowedOriginsNeedsNoToken) {
   asked.method = "OPTIONS";
   ASSERT_TRUE(access.preflight(asked));
   EXPECT_EQ(access.preflight(asked)->status, 204);
+  EXPECT_EQ(access.preflight(asked)->headers.front(),
+            (Headers::value_type{"Access-Control-Allow-Methods", "GET, HEAD, POST, PUT, DELETE"}));
   EXPECT_EQ(access.admit(asked).refusal->status, 401);
   asked.headers["origin"] = "https://evil.example";
   EXPECT_FALSE(access.preflight(asked));

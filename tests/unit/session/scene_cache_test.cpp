@@ -75,6 +75,23 @@ TEST(SceneCache, DropsASceneWhoseFileChanged) {
   EXPECT_EQ(cache.totals().bytes, 0u);
 }
 
+TEST(SceneCache, FreesASceneWhoseFileIsGoneWhenItIsNotShown) {
+  const test::TemporaryFolder folder;
+  const auto file = folder.write("box.glb");
+  SceneCache cache(1000);
+  std::optional<LoadedScene> shown =
+      cache.add(key("a"), scene_of(100), {scene::examine_file(file)});
+  cache.add(key("b"), scene_of(100), {scene::examine_file(folder.write("other.glb"))});
+  std::filesystem::remove(file);
+  EXPECT_TRUE(cache.trim());
+  EXPECT_EQ(cache.totals().bytes, 200u) << "a session shows it";
+  shown.reset();
+  EXPECT_TRUE(cache.trim());
+  EXPECT_EQ(cache.totals().bytes, 100u);
+  EXPECT_EQ(cache.totals().evictions, 0u);
+  EXPECT_TRUE(cache.find(key("b")));
+}
+
 TEST(SceneCache, ReplacesASceneOfTheSameKey) {
   SceneCache cache(1000);
   cache.add(key("a"), scene_of(100), {});

@@ -17,6 +17,11 @@ export class ScenePreviews {
 
   constructor(viewer: Viewer) {
     this.viewer = viewer;
+    // One that is deleted and uploaded again has another thumbnail.
+    viewer.scenes.watch(({ scenes }) => {
+      const names = new Set(scenes.map(({ name }) => name));
+      for (const name of this.settled) if (!names.has(name)) this.settled.delete(name);
+    });
   }
 
   /** Fetches thumbnails as they come, until `stop`. */

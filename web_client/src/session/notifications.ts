@@ -3,6 +3,7 @@
 import type { FrameStats, Notifications, SessionInfo } from "heliograph/messages.ts";
 import type { CameraPose } from "../common/camera_pose.ts";
 import type { Signal } from "../common/signal.ts";
+import { listUploads } from "../common/uploads.ts";
 import type { Bookmarks } from "./bookmarks.ts";
 import type { Company } from "./company/company.ts";
 import type { Marks } from "./marks/marks.ts";
@@ -80,6 +81,9 @@ export function receiveNotification(targets: Targets, method: string, params: un
       break;
     case "textures.changed":
       targets.textures.notified(params as Notifications["textures.changed"]);
+      break;
+    case "uploads.changed":
+      void listUploads(targets, (params as Notifications["uploads.changed"]).kind);
       break;
     case "nodes.changed":
     case "selection.changed":

@@ -5,6 +5,7 @@ import { cropped } from "../../common/image_files.ts";
 import { maxNameLength } from "../../session/bookmarks.ts";
 import { describeControl } from "../../session/control_state.ts";
 import type { Viewer } from "../../session/viewer.ts";
+import { confirmButton } from "../../widgets/confirm_button.ts";
 import { button, element } from "../../widgets/element.ts";
 
 const thumbnailWidth = 112;
@@ -70,24 +71,8 @@ function createEntry(viewer: Viewer, bookmark: Bookmark, reset: () => void): HTM
     },
   });
   entry.value = name;
-  return element("li", {}, choose, rename, createRemoveButton(viewer, name, reset));
-}
-
-/** Asks before it removes: the second click confirms. */
-function createRemoveButton(viewer: Viewer, name: string, reset: () => void): HTMLElement {
-  let asked = false;
-  const remove = button(`Remove ${name}`, "close", () => {
-    if (asked) {
-      void viewer.bookmarks.remove(name);
-      return;
-    }
-    asked = true;
-    remove.setAttribute("aria-label", `Confirm: remove ${name}`);
-    remove.replaceChildren("Remove?");
-    remove.classList.add("confirms");
+  const remove = confirmButton(`Remove ${name}`, "close", () => {
+    void viewer.bookmarks.remove(name);
   });
-  remove.addEventListener("blur", () => {
-    if (asked) reset();
-  });
-  return remove;
+  return element("li", {}, choose, rename, remove);
 }

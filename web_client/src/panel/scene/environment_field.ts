@@ -5,6 +5,7 @@ import type { Viewer } from "../../session/viewer.ts";
 import { button, element, icon, setOptions } from "../../widgets/element.ts";
 import { field } from "../../widgets/field.ts";
 import { createFileButton } from "../../widgets/file_button.ts";
+import { createDeleteButton } from "./delete_button.ts";
 
 const withScene = "";
 const withSceneLabel = "Automatic";
@@ -47,17 +48,20 @@ export function createEnvironmentField(
     // Rebuilt only when files are added or removed, so that a tile keeps the focus.
     if (shown !== names) gallery.replaceChildren(...tilesOf(viewer, state));
     shown = names;
-    for (const tile of gallery.children) {
-      const chosen = (tile as HTMLElement).dataset.environment === (state.current ?? withScene);
+    for (const tile of gallery.querySelectorAll<HTMLElement>(".tile")) {
+      const chosen = tile.dataset.environment === (state.current ?? withScene);
       tile.setAttribute("aria-pressed", String(chosen));
     }
   };
   parts.environment.watch((state) => {
     node.hidden = !state;
     if (!state) return;
+    const names = state.environments.map(({ name }) => name);
+    // Its file may have been deleted.
+    if (state.current && !names.includes(state.current)) names.push(state.current);
     setOptions(select, [
       { value: withScene, label: withSceneLabel },
-      ...state.environments.map(({ name }) => ({ value: name, label: name })),
+      ...names.map((name) => ({ value: name, label: name })),
     ]);
     select.value = state.current ?? withScene;
     fill();
@@ -80,7 +84,14 @@ function tilesOf(viewer: Viewer, { environments }: EnvironmentState): HTMLElemen
     );
   return [
     tile(withScene, withSceneLabel, placeholder()),
-    ...environments.map(({ name, bytes }) => tile(name, name, thumbnail(viewer, name, bytes))),
+    ...environments.map(({ name, bytes, uploaded }) =>
+      element(
+        "div",
+        { class: "tile-box" },
+        tile(name, name, thumbnail(viewer, name, bytes)),
+        uploaded ? createDeleteButton(viewer, "environment", name) : null,
+      ),
+    ),
   ];
 }
 

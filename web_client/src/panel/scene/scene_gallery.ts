@@ -1,9 +1,11 @@
 // All scenes with thumbnails: searched by name, favourites first.
 
+import type { SceneEntry } from "heliograph/messages.ts";
 import { favourites, favouritesFirst, setFavourite } from "../../common/favourites.ts";
 import { thumbnailChanged, thumbnailOf } from "../../previews/thumbnails.ts";
 import type { Viewer } from "../../session/viewer.ts";
 import { element, icon, setText } from "../../widgets/element.ts";
+import { createDeleteButton } from "./delete_button.ts";
 
 interface SceneTile {
   node: HTMLElement;
@@ -37,12 +39,12 @@ export function createSceneGallery(viewer: Viewer): HTMLElement {
   let shown = "";
   const fill = (): void => {
     const { scenes, current } = viewer.scenes.value;
-    const names = scenes.map(({ name }) => name);
+    const entries = scenes.map(({ name, uploaded }) => `${name} ${uploaded}`).join("\n");
     // Rebuilt only when scenes are added or removed, so that a tile keeps the focus.
-    if (shown !== names.join("\n")) {
-      shown = names.join("\n");
+    if (shown !== entries) {
+      shown = entries;
       tiles.clear();
-      for (const { name } of favouritesFirst(scenes)) tiles.set(name, createTile(viewer, name));
+      for (const scene of favouritesFirst(scenes)) tiles.set(scene.name, createTile(viewer, scene));
       grid.replaceChildren(...[...tiles.values()].map(({ node }) => node));
       filter();
     }
@@ -67,7 +69,7 @@ export function createSceneGallery(viewer: Viewer): HTMLElement {
   );
 }
 
-function createTile(viewer: Viewer, name: string): SceneTile {
+function createTile(viewer: Viewer, { name, uploaded }: SceneEntry): SceneTile {
   const choose = element(
     "button",
     { type: "button", class: "tile", click: () => void viewer.loading.load(name) },
@@ -86,7 +88,8 @@ function createTile(viewer: Viewer, name: string): SceneTile {
     },
     icon("star"),
   );
-  return { node: element("div", { class: "tile-box" }, choose, star), choose, star };
+  const remove = uploaded ? createDeleteButton(viewer, "scene", name) : null;
+  return { node: element("div", { class: "tile-box" }, choose, star, remove), choose, star };
 }
 
 function thumbnail(source: string | null): HTMLElement {

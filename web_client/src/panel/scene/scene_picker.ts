@@ -46,6 +46,10 @@ function sceneList(viewer: Viewer): HTMLSelectElement {
     } else if (!current && !loading) {
       options.unshift({ value: "", label: "Choose a scene" });
     }
+    // Its file may have been deleted.
+    if (current && !scenes.some(({ name }) => name === current)) {
+      options.unshift({ value: current, label: current });
+    }
     setOptions(select, options);
     select.value = (loading?.kind === "scene" ? loading.name : null) ?? current ?? "";
     // The closed list truncates long names.

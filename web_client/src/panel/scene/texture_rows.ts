@@ -7,6 +7,7 @@ import type { Viewer } from "../../session/viewer.ts";
 import { button, element, setOptions } from "../../widgets/element.ts";
 import { field } from "../../widgets/field.ts";
 import { createFileButton } from "../../widgets/file_button.ts";
+import { createDeleteButton } from "./delete_button.ts";
 
 /** File names that the server takes as images. */
 const imageFiles = ".png,.jpg,.jpeg,.webp,.ktx2";
@@ -28,6 +29,7 @@ export function createTextureRows(
   const { textures } = viewer;
   let material = "";
   let rows: Row[] = [];
+  const images = createImageList(viewer);
   const node = element("div", { class: "texture-rows" });
   const change = async (slot: string, choice: TextureChoice): Promise<void> => {
     await textures.choose(material, slot, choice);
@@ -51,11 +53,35 @@ export function createTextureRows(
     if (slots !== names.join()) {
       slots = names.join();
       rows = names.map((slot) => createRow(viewer, slot, change, replace));
-      node.replaceChildren(...rows.map((row) => row.node));
+      node.replaceChildren(...rows.map((row) => row.node), images);
     }
     show(material);
   });
   return { node, show };
+}
+
+/** The uploaded images, which can be deleted. */
+function createImageList(viewer: Viewer): HTMLElement {
+  const list = element("ul", { class: "bookmarks", "aria-label": "Uploaded images" });
+  let shown = "";
+  viewer.textures.images.watch((images) => {
+    list.hidden = images.length === 0;
+    const names = images.map(({ name }) => name);
+    // Made again only for other images, so that a button keeps the focus.
+    if (shown === names.join()) return;
+    shown = names.join();
+    list.replaceChildren(
+      ...names.map((name) =>
+        element(
+          "li",
+          {},
+          element("span", { class: "uploaded-image" }, name),
+          createDeleteButton(viewer, "image", name),
+        ),
+      ),
+    );
+  });
+  return list;
 }
 
 interface Row {
