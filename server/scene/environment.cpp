@@ -10,10 +10,7 @@
 
 namespace heliograph::scene {
 
-namespace {
-
-/// Valid radiance: clamped to 0..1e6, NaN becomes 0.
-glm::vec3 physical(const glm::vec3& radiance) {
+glm::vec3 physical_radiance(const glm::vec3& radiance) {
   constexpr float brightest = 1e6f;
   glm::vec3 result;
   for (int c = 0; c < 3; ++c) {
@@ -22,11 +19,9 @@ glm::vec3 physical(const glm::vec3& radiance) {
   return result;
 }
 
-}  // namespace
-
 Environment decode_environment(std::span<const std::uint8_t> file) {
   Environment environment = is_exr(file) ? decode_exr(file) : decode_radiance(file);
-  for (glm::vec3& radiance : environment.radiance) radiance = physical(radiance);
+  for (glm::vec3& radiance : environment.radiance) radiance = physical_radiance(radiance);
   return environment;
 }
 

@@ -28,6 +28,9 @@ Environment load_environment(const std::filesystem::path& path);
 /// The same of the bytes of such a file. @throws ImportError
 Environment decode_environment(std::span<const std::uint8_t> file);
 
+/// Valid radiance: from 0 to 1e6; NaN becomes 0.
+glm::vec3 physical_radiance(const glm::vec3& radiance);
+
 /// Constant radiance from every direction (a furnace).
 Environment constant_environment(const glm::vec3& radiance);
 

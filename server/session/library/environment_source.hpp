@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "scene/environment.hpp"
+#include "scene/scene.hpp"
 #include "scene/source_file.hpp"
 #include "session/library/scene_catalogue.hpp"
 
@@ -23,6 +24,14 @@ class EnvironmentSource {
 
   /// The forced environment, else the one beside the scene.
   std::optional<std::filesystem::path> path_for(const CatalogueEntry& entry) const;
+  /// Whether the file of a scene has the light around it, and none is forced.
+  bool is_lit_by_its_file(const scene::Scene& scene) const { return scene.environment && !forced_; }
+  /// That light, else the environment in the file of path_for(); for an empty path the studio.
+  /// @throws scene::ImportError
+  std::shared_ptr<const scene::Environment> environment_of(const scene::Scene& scene,
+                                                           const std::filesystem::path& path) {
+    return is_lit_by_its_file(scene) ? scene.environment : environment_at(path);
+  }
   /// The environment in that file; for an empty path the studio.
   /// @throws scene::ImportError
   std::shared_ptr<const scene::Environment> environment_at(const std::filesystem::path& path);

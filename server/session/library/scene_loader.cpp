@@ -26,6 +26,11 @@ protocol::Error loads_another() {
       "a scene is being loaded: its textures can be set when it is shown");
 }
 
+protocol::Error file_is_gone(const std::string& scene) {
+  return protocol::error::not_found(
+      "scene", "the file of " + scene + " is gone: the scene cannot be loaded again");
+}
+
 protocol::Error session_ended() {
   return protocol::error::not_found("session", "the session has ended");
 }
@@ -85,7 +90,7 @@ void SceneLoader::load_textures(std::shared_ptr<Session> session, Textures textu
   const auto shown = session->scene().shown();
   if (!shown) return done(shown.error());
   const auto entry = catalogue_.find(shown->name);
-  if (!entry) return done(entry.error());
+  if (!entry) return done(file_is_gone(shown->name));
   SceneKey key{.file = entry->path,
                .choice = shown->scene->choice,
                .environment = environments_.path_for(*entry).value_or(""),

@@ -77,6 +77,9 @@ class SceneLoader {
   /// interrupted.
   void take_new_device(std::size_t device);
 
+  /// Scenes of files that have changed or are gone leave the cache soon, if no session shows them.
+  void files_changed() { wake_->notify(); }
+
   CacheTotals cache_totals() const { return cache_.totals(); }
 
  private:
@@ -112,8 +115,7 @@ class SceneLoader {
   void run_job(Job& job);
   std::string sessions_of(const Job& job);
   bool wants_first_view(const Job& job);
-  void upload_first_view(Job& job, std::unique_ptr<scene::Scene> scene, std::uint64_t image_bytes,
-                         const std::shared_ptr<const scene::Environment>& environment);
+  void upload_first_view(Job& job, std::unique_ptr<scene::Scene> scene, std::uint64_t image_bytes);
   static void show_first_view(const Job& job, Waiter& waiter);
   static void end_first_view(Waiter& waiter);
   void end_first_views(Job& job);

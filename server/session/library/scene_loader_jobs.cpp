@@ -217,7 +217,6 @@ LoadedScene SceneLoader::import_scene(Job& job, std::vector<scene::SourceFile>& 
   };
   if (!job.key.environment.empty()) sources.push_back(scene::examine_file(job.key.environment));
   checkpoint("reading", 0.0f);
-  const auto environment = environments_.environment_at(job.key.environment);
   render::Engine& engine = devices_.engine(job.key.device);
   scene::ImportOptions options{
       .choice = job.key.choice,
@@ -228,7 +227,7 @@ LoadedScene SceneLoader::import_scene(Job& job, std::vector<scene::SourceFile>& 
       .textures = job.key.textures};
   if (wants_first_view(job)) {
     options.untextured = [&](std::unique_ptr<scene::Scene> scene, std::uint64_t image_bytes) {
-      upload_first_view(job, std::move(scene), image_bytes, environment);
+      upload_first_view(job, std::move(scene), image_bytes);
     };
     options.untextured_from = options_.first_view_bytes;
   }
@@ -236,14 +235,18 @@ LoadedScene SceneLoader::import_scene(Job& job, std::vector<scene::SourceFile>& 
       std::make_unique<scene::Scene>(scene::import_gltf(job.entry.path, options_.limits, options));
   sources.insert(sources.end(), imported->sources.begin(), imported->sources.end());
   LoadedScene loaded{.name = job.entry.name};
+  loaded.environment =
+      (environments_.is_lit_by_its_file(*imported) ? job.entry.path : job.key.environment)
+          .filename()
+          .string();
+  auto environment = environments_.environment_of(*imported, job.key.environment);
   loaded.resources = engine.upload_and_free_pixels(
-      std::move(imported), environment,
+      std::move(imported), std::move(environment),
       [&](std::string_view stage, float fraction) {
         checkpoint(stage, import_fraction + (1.0f - import_fraction) * fraction);
       },
       job.first_view);
   loaded.scene = render::scene_of(*loaded.resources);
-  loaded.environment = job.key.environment.filename().string();
   loaded.host_bytes = loaded.scene->bytes();
   return loaded;
 }
@@ -259,12 +262,12 @@ bool SceneLoader::wants_first_view(const Job& job) {
 
 /// Not where a second acceleration structure would take much of the scene's memory.
 void SceneLoader::upload_first_view(Job& job, std::unique_ptr<scene::Scene> scene,
-                                    std::uint64_t image_bytes,
-                                    const std::shared_ptr<const scene::Environment>& environment) {
+                                    std::uint64_t image_bytes) {
   if (has_masks(*scene) && image_bytes < scene->bytes()) return;
+  auto environment = environments_.environment_of(*scene, job.key.environment);
   auto uploaded = devices_.engine(job.key.device)
-                      .upload(std::shared_ptr<const scene::Scene>(std::move(scene)), environment,
-                              [&](std::string_view stage, float) {
+                      .upload(std::shared_ptr<const scene::Scene>(std::move(scene)),
+                              std::move(environment), [&](std::string_view stage, float) {
                                 throw_if_stopped(job);
                                 report_progress(job, stage, import_fraction * first_view_fraction);
                               });

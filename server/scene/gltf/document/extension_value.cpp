@@ -1,6 +1,17 @@
 #include "scene/gltf/document/extension_value.hpp"
 
 namespace heliograph::scene {
+namespace {
+
+std::vector<std::uint32_t> index_items(const tinygltf::Value& list) {
+  std::vector<std::uint32_t> result;
+  for (std::size_t i = 0; i < list.ArrayLen(); ++i) {
+    result.push_back(static_cast<std::uint32_t>(list.Get(static_cast<int>(i)).GetNumberAsInt()));
+  }
+  return result;
+}
+
+}  // namespace
 
 std::optional<ExtensionValue> ExtensionValue::object(const std::string& member) const {
   if (!has(member)) return std::nullopt;
@@ -40,12 +51,12 @@ std::optional<std::uint32_t> ExtensionValue::index(const std::string& member) co
 }
 
 std::vector<std::uint32_t> ExtensionValue::indices(const std::string& member) const {
-  std::vector<std::uint32_t> result;
-  const tinygltf::Value& list = value_->Get(member);
-  for (std::size_t i = 0; i < list.ArrayLen(); ++i) {
-    result.push_back(static_cast<std::uint32_t>(list.Get(static_cast<int>(i)).GetNumberAsInt()));
-  }
-  return result;
+  return index_items(value_->Get(member));
+}
+
+std::vector<std::uint32_t> ExtensionValue::index_list(const std::string& member,
+                                                      std::size_t list) const {
+  return index_items(value_->Get(member).Get(static_cast<int>(list)));
 }
 
 std::optional<ExtensionValue> find_extension(const tinygltf::ExtensionMap& extensions,

@@ -51,6 +51,8 @@ class ExtensionValue {
   std::optional<std::uint64_t> integer(const std::string& member) const;
   std::optional<std::uint32_t> index(const std::string& member) const;
   std::vector<std::uint32_t> indices(const std::string& member) const;
+  /// One of the lists of an array of them.
+  std::vector<std::uint32_t> index_list(const std::string& member, std::size_t list) const;
 
  private:
   const tinygltf::Value* value_;

@@ -3,8 +3,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <map>
 #include <set>
+#include <utility>
 
 #include "scene/first_failure.hpp"
 #include "scene/gltf/document/extension_value.hpp"
@@ -37,12 +37,17 @@ std::string try_image(const ImageSource& source, const ImportLimits& limits, con
   return "";
 }
 
+void check_size(const ImageSource& source, ImageSize size, const ImportLimits& limits) {
+  if (size.width <= limits.texture_size && size.height <= limits.texture_size) return;
+  refuse(source, "is " + std::to_string(size.width) + " x " + std::to_string(size.height) +
+                     " pixels: the limit is " + std::to_string(limits.texture_size));
+}
+
 /// Sizes of all images, 0 where there is a problem.
 std::vector<ImageSize> probe_images(std::span<const ImageSource> sources,
                                     std::span<const ImageUse> uses, const ImportLimits& limits,
-                                    std::vector<std::string>& problems) {
+                                    TexelBudget& budget, std::vector<std::string>& problems) {
   std::vector<ImageSize> sizes(uses.size());
-  std::uint64_t texels = 0;
   for (std::size_t i = 0; i < uses.size(); ++i) {
     const ImageSource& source = sources[uses[i].source];
     for (const std::uint32_t index : uses[i].sources()) {
@@ -53,16 +58,8 @@ std::vector<ImageSize> probe_images(std::span<const ImageSource> sources,
         sizes[i] = {std::max(sizes[i].width, own.width), std::max(sizes[i].height, own.height)};
       });
     }
-    const auto [width, height] = sizes[i];
-    if (width > limits.texture_size || height > limits.texture_size) {
-      refuse(source, "is " + std::to_string(width) + " x " + std::to_string(height) +
-                         " pixels: the limit is " + std::to_string(limits.texture_size));
-    }
-    texels += std::uint64_t(width) * height;
-    if (texels > limits.texels) {
-      throw ImportError("the images exceed the limit of " + std::to_string(limits.texels) +
-                        " texels");
-    }
+    check_size(source, sizes[i], limits);
+    budget.take(sizes[i]);
   }
   return sizes;
 }
@@ -162,48 +159,83 @@ std::uint64_t image_file_bytes(const GltfFile& file) {
   return bytes;
 }
 
-std::vector<ImageSource> read_image_sources(GltfFile& file, const ImportLimits& limits,
-                                            const std::stop_token& stop) {
+const ImageSource& ImageFiles::at(std::uint32_t image) {
+  if (!sources_[image]) sources_[image] = read(image);
+  return *sources_[image];
+}
+
+std::vector<ImageSource> ImageFiles::take_all() {
   std::vector<ImageSource> result;
-  std::map<std::uint32_t, std::shared_ptr<const ImageBytes>> known;  // by view
-  std::uint64_t bytes = 0;
-  for (const tinygltf::Image& image : file.model().images) {
-    throw_if_cancelled(stop);
-    ImageSource& source = result.emplace_back();
-    source.path = item_path("", "images", result.size() - 1);
-    source.name = image.name;
-    if (const auto view = to_index(image.bufferView)) {
-      source.file = known[*view];
-      if (!source.file) {
-        // Views may overlap, so that the file's size is no limit.
-        bytes += file.model().bufferViews[*view].byteLength;
-        if (bytes > limits.file_bytes) {
-          throw ImportError(source.path + ": the images have more than the " +
-                            std::to_string(limits.file_bytes) + " bytes of the limit on files");
-        }
-        known[*view] = source.file = std::make_shared<const ImageBytes>(file.image_file(*view));
-      }
-      source.bytes = *source.file;
-      continue;
-    }
-    try {
-      source.file = std::make_shared<const ImageBytes>(file.resource(source.path));
-      source.bytes = *source.file;
-    } catch (const MissingFile& error) {
-      if (limits.strict_assets) throw;
-      source.problem = error.what();
-    }
+  for (std::uint32_t i = 0; i < sources_.size(); ++i) {
+    at(i);
+    result.push_back(std::move(*sources_[i]));
   }
+  sources_.clear();
+  known_.clear();
+  return result;
+}
+
+ImageSource ImageFiles::read(std::uint32_t image) {
+  throw_if_cancelled(stop_);
+  const tinygltf::Image& document = file_.model().images[image];
+  ImageSource source;
+  source.path = item_path("", "images", image);
+  source.name = document.name;
+  if (const auto view = to_index(document.bufferView)) {
+    source.file = known_[*view];
+    if (!source.file) {
+      // Views may overlap, so that the file's size is no limit.
+      bytes_ += file_.model().bufferViews[*view].byteLength;
+      if (bytes_ > limits_.file_bytes) {
+        throw ImportError(source.path + ": the images have more than the " +
+                          std::to_string(limits_.file_bytes) + " bytes of the limit on files");
+      }
+      known_[*view] = source.file = std::make_shared<const ImageBytes>(file_.image_file(*view));
+    }
+    source.bytes = *source.file;
+    return source;
+  }
+  try {
+    source.file = std::make_shared<const ImageBytes>(file_.resource(source.path));
+    source.bytes = *source.file;
+  } catch (const MissingFile& error) {
+    if (limits_.strict_assets) throw;
+    source.problem = error.what();
+  }
+  return source;
+}
+
+void TexelBudget::take(ImageSize size) {
+  const std::uint64_t texels = std::uint64_t(size.width) * size.height;
+  if (texels > left_) {
+    throw ImportError("the images exceed the limit of " + std::to_string(all_) + " texels");
+  }
+  left_ -= texels;
+}
+
+ImageTexels decode_texels(const ImageSource& source, const ImportLimits& limits,
+                          TexelBudget& budget) {
+  ImageTexels result;
+  result.problem = source.problem;
+  if (!result.problem.empty()) return result;
+  result.problem = try_image(source, limits, [&] { result.size = probe_image(source.bytes); });
+  if (!result.problem.empty()) return result;
+  check_size(source, result.size, limits);
+  budget.take(result.size);
+  result.problem = try_image(source, limits, [&] {
+    result.rgba.resize(std::size_t(result.size.width) * result.size.height * 4);
+    decode_image(source.bytes, result.size, result.rgba);
+  });
   return result;
 }
 
 DecodedImages decode_images(std::span<const ImageSource> sources, std::span<const ImageUse> uses,
-                            const KeptLevels& kept, const ImportLimits& limits,
+                            const KeptLevels& kept, const ImportLimits& limits, TexelBudget& budget,
                             const std::stop_token& stop, const std::function<void()>& decoded) {
   DecodedImages result;
   result.images.resize(uses.size());
   result.problems.resize(uses.size());
-  const std::vector<ImageSize> sizes = probe_images(sources, uses, limits, result.problems);
+  const std::vector<ImageSize> sizes = probe_images(sources, uses, limits, budget, result.problems);
   result.kept_side = kept_side(sizes, kept.textures);
   FirstFailure failure;
   tbb::parallel_for(std::size_t(0), uses.size(), [&](std::size_t i) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -48,9 +49,53 @@ struct ImageUse {
 /// Bytes of the files of all images, none of which is read for it; 0 for those that are missing.
 std::uint64_t image_file_bytes(const GltfFile& file);
 
-/// @throws ImportError, LoadCancelled
-std::vector<ImageSource> read_image_sources(GltfFile& file, const ImportLimits& limits,
-                                            const std::stop_token& stop);
+/// The files of a document's images, each read once, when it is asked for first.
+class ImageFiles {
+ public:
+  /// The arguments outlive this.
+  ImageFiles(GltfFile& file, const ImportLimits& limits, const std::stop_token& stop)
+      : file_(file), limits_(limits), stop_(stop), sources_(file.model().images.size()) {}
+
+  /// @throws ImportError, LoadCancelled
+  const ImageSource& at(std::uint32_t image);
+  /// Those of all images; none is left here. @throws ImportError, LoadCancelled
+  std::vector<ImageSource> take_all();
+
+ private:
+  using Bytes = std::shared_ptr<const std::vector<std::uint8_t>>;
+
+  ImageSource read(std::uint32_t image);
+
+  GltfFile& file_;
+  const ImportLimits& limits_;
+  const std::stop_token& stop_;
+  std::vector<std::optional<ImageSource>> sources_;
+  std::map<std::uint32_t, Bytes> known_;  // by view
+  std::uint64_t bytes_ = 0;               // of views
+};
+
+/// Texels that a file's images may still have.
+class TexelBudget {
+ public:
+  explicit TexelBudget(std::uint64_t texels) : all_(texels), left_(texels) {}
+  /// @throws ImportError when the budget is exceeded
+  void take(ImageSize size);
+
+ private:
+  std::uint64_t all_;
+  std::uint64_t left_;
+};
+
+/// An image alone, without mip levels.
+struct ImageTexels {
+  ImageSize size;
+  std::vector<std::uint8_t> rgba;  // top row first
+  std::string problem;             // why there are none: the image is missing or damaged
+};
+
+/// @throws ImportError when a limit is exceeded, or the image is damaged with strict assets
+ImageTexels decode_texels(const ImageSource& source, const ImportLimits& limits,
+                          TexelBudget& budget);
 
 /// The images of all uses. Those that are missing or damaged are one white texel, unless assets are
 /// strict or the image is required.
@@ -70,7 +115,7 @@ struct KeptLevels {
 /// @throws ImportError when a limit is exceeded, or an image is damaged that is required or with
 /// strict assets; LoadCancelled
 DecodedImages decode_images(std::span<const ImageSource> sources, std::span<const ImageUse> uses,
-                            const KeptLevels& kept, const ImportLimits& limits,
+                            const KeptLevels& kept, const ImportLimits& limits, TexelBudget& budget,
                             const std::stop_token& stop, const std::function<void()>& decoded);
 
 /// Removes the levels of an image whose sides are longer, if it has a file.

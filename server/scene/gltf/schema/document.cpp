@@ -1,5 +1,7 @@
 // The table of glTF's root, scenes, nodes, cameras, lights and images.
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "scene/gltf/schema/geometry.hpp"
 #include "scene/gltf/schema/materials.hpp"
@@ -98,6 +100,33 @@ constexpr ObjectType variant = {variant_members};
 constexpr Member variants_members[] = {objects("variants", variant)};
 constexpr ObjectType variants = {variants_members};
 
+// A smaller or larger file of mip 0 is found when it is read.
+void check_image_light(const nlohmann::json& light_json, const Place& place,
+                       const nlohmann::json&) {
+  const auto size = light_json.at("specularImageSize").get<double>();
+  const auto levels = static_cast<std::size_t>(std::floor(std::log2(size))) + 1;
+  const std::size_t mips = light_json.at("specularImages").size();
+  if (mips > levels) {
+    refuse_at(place.text(), "specularImages",
+              std::to_string(mips) + " mip levels are more than the " + std::to_string(levels) +
+                  " of specularImageSize");
+  }
+}
+
+constexpr Member image_light_members[] = {
+    text("name"),
+    numbers("rotation", 4),
+    number("intensity").at_least(0),
+    number_lists("irradianceCoefficients", 9, 3).needed(),
+    index_lists("specularImages", Table::images, 6).items(1).needed(),
+    integer("specularImageSize").integers(1, 1u << 30).needed(),
+};
+constexpr ObjectType image_light = {.members = image_light_members, .rule = check_image_light};
+constexpr Member image_lights_members[] = {objects("lights", image_light)};
+constexpr ObjectType image_lights = {image_lights_members};
+constexpr Member scene_light_members[] = {index("light", Table::image_lights).needed()};
+constexpr ObjectType scene_light = {scene_light_members};
+
 constexpr Member node_light_members[] = {index("light", Table::lights).needed()};
 constexpr ObjectType node_light = {node_light_members};
 constexpr Member instancing_members[] = {index_map("attributes", Table::accessors).needed()};
@@ -165,9 +194,11 @@ constexpr ObjectType node = {.members = node_members,
                              .rule = check_node};
 
 constexpr Member scene_members[] = {text("name"), indices("nodes", Table::nodes)};
-constexpr ObjectType scene_type = {scene_members};
+constexpr Extension scene_extensions[] = {{"EXT_lights_image_based", &scene_light}};
+constexpr ObjectType scene_type = {scene_members, scene_extensions};
 
 constexpr Extension root_extensions[] = {
+    {"EXT_lights_image_based", &image_lights},
     {"KHR_lights_punctual", &lights},
     {"KHR_materials_variants", &variants},
 };
@@ -205,6 +236,7 @@ constexpr std::string_view scenes_path[] = {"scenes"};
 constexpr std::string_view skins_path[] = {"skins"};
 constexpr std::string_view textures_path[] = {"textures"};
 constexpr std::string_view lights_path[] = {"extensions", "KHR_lights_punctual", "lights"};
+constexpr std::string_view image_lights_path[] = {"extensions", "EXT_lights_image_based", "lights"};
 constexpr std::string_view variants_path[] = {"extensions", "KHR_materials_variants", "variants"};
 constexpr TableSource sources[] = {
     {Table::accessors, "accessors", accessors_path},
@@ -220,6 +252,7 @@ constexpr TableSource sources[] = {
     {Table::skins, "skins", skins_path},
     {Table::textures, "textures", textures_path},
     {Table::lights, "lights", lights_path},
+    {Table::image_lights, "image-based lights", image_lights_path},
     {Table::variants, "variants", variants_path},
     {Table::animation_samplers, "samplers", {}},
 };

@@ -213,6 +213,9 @@ class Checker {
       case Kind::index_map:
       case Kind::integer_map:
         return map(value, member, place);
+      case Kind::number_lists:
+      case Kind::index_lists:
+        return lists(value, member, place);
       default:
         return array(value, member, place);
     }
@@ -255,6 +258,32 @@ class Checker {
         budget_.take(1, bytes_of_object, place.text());
         return object(value, *member.type, &place);
     }
+  }
+
+  /// Errors name a list, not its items.
+  void lists(json& value, const Member& member, const Place& place) {
+    const bool of_numbers = member.kind == Kind::number_lists;
+    const std::string list_reason = "must be an array of " + std::to_string(member.length) +
+                                    (of_numbers ? " numbers" : " indices");
+    if (!value.is_array()) fail_at(&place, "must be an array");
+    if (member.lists != 0 && value.size() != member.lists) {
+      fail_at(&place, "must be an array of " + std::to_string(member.lists) + " arrays");
+    }
+    if (value.size() < member.least_items) fail_at(&place, "must not be empty");
+    text_.open('[');
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      throw_if_cancelled(stop_, i);
+      const Place at{place.owner, place.member, i};
+      if (!value[i].is_array() || value[i].size() != member.length) fail_at(&at, list_reason);
+      budget_.take(1, bytes_of_object, place.text());
+      text_.open('[');
+      for (const json& inner : value[i]) {
+        of_numbers ? number(inner, member, at, list_reason)
+                   : index(inner, member, at, "must contain whole numbers, zero or more");
+      }
+      text_.close(']');
+    }
+    text_.close(']');
   }
 
   void map(json& value, const Member& member, const Place& place) {

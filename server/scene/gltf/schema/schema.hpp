@@ -22,9 +22,11 @@ enum class Kind {
   numbers,
   index,
   indices,
-  index_map,    // an object whose members are all indices
-  index_maps,   // an array of these
-  integer_map,  // an object whose members are all integers
+  index_map,     // an object whose members are all indices
+  index_maps,    // an array of these
+  integer_map,   // an object whose members are all integers
+  number_lists,  // an array of arrays of numbers
+  index_lists,   // an array of arrays of indices
   object,
   objects,
 };
@@ -45,6 +47,7 @@ enum class Table {
   skins,
   textures,
   lights,
+  image_lights,
   variants,
   animation_samplers,
   count
@@ -67,7 +70,8 @@ struct Member {
   Kind kind = Kind::text;
   bool required = false;
   Table table = Table::none;      // that an index refers to
-  std::uint32_t length = 0;       // of an array of numbers; 0: any
+  std::uint32_t length = 0;       // of an array of numbers, or of each list; 0: any
+  std::uint32_t lists = 0;        // of an array of lists; 0: any
   std::uint32_t least_items = 0;  // of an array
   double minimum = -unlimited;    // of a number
   double maximum = unlimited;     // of a number
@@ -211,6 +215,14 @@ constexpr Member index_map(std::string_view name, Table table) {
 }
 constexpr Member integer_map(std::string_view name) {
   return {.name = name, .kind = Kind::integer_map};
+}
+/// `lists` arrays, or any number for 0, of `length` numbers each.
+constexpr Member number_lists(std::string_view name, std::uint32_t lists, std::uint32_t length) {
+  return {.name = name, .kind = Kind::number_lists, .length = length, .lists = lists};
+}
+/// Any number of arrays of `length` indices each.
+constexpr Member index_lists(std::string_view name, Table table, std::uint32_t length) {
+  return {.name = name, .kind = Kind::index_lists, .table = table, .length = length};
 }
 constexpr Member object(std::string_view name, const ObjectType& type) {
   return {.name = name, .kind = Kind::object, .type = &type};

@@ -12,15 +12,21 @@
 namespace heliograph::scene {
 namespace {
 
-constexpr std::array<std::string_view, 19> supported_extensions = {
+constexpr std::array<std::string_view, 25> supported_extensions = {
+    "EXT_lights_image_based",
     "EXT_meshopt_compression",
     "EXT_mesh_gpu_instancing",
     "EXT_texture_webp",
+    "KHR_animation_pointer",
     "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
+    "KHR_materials_anisotropy",
     "KHR_materials_clearcoat",
+    "KHR_materials_diffuse_transmission",
+    "KHR_materials_dispersion",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
+    "KHR_materials_iridescence",
     "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_sheen",
     "KHR_materials_specular",
@@ -34,11 +40,8 @@ constexpr std::array<std::string_view, 19> supported_extensions = {
     "KHR_texture_transform",
 };
 
-/// A scene without them is complete: light from around it, which every scene has of its own choice,
-/// animations of single properties, and what pointers may do.
-constexpr std::array<std::string_view, 4> harmless_extensions = {
-    "EXT_lights_image_based",
-    "KHR_animation_pointer",
+/// A scene without them is complete: they tell what people may point at.
+constexpr std::array<std::string_view, 2> harmless_extensions = {
     "KHR_node_hoverability",
     "KHR_node_selectability",
 };

@@ -14,9 +14,11 @@ using nlohmann::json;
 
 constexpr const char* through = "KHR_materials_diffuse_transmission";
 
-/// `material` as the only one of a file.
+/// `material` as the only one of a file that requires the extension.
 Scene import_translucent(json material) {
   GltfBuilder builder = everything();
+  builder.json["extensionsUsed"].push_back(through);
+  builder.json["extensionsRequired"].push_back(through);
   builder.json["materials"][0] = std::move(material);
   return builder.import();
 }

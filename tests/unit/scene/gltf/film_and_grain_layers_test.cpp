@@ -10,9 +10,13 @@ namespace {
 
 using nlohmann::json;
 
-/// The scene whose only material has these extensions.
+/// The scene whose only material has these extensions, which its file requires.
 Scene import_extended(const json& extensions) {
   GltfBuilder builder = everything();
+  for (const auto& [name, values] : extensions.items()) {
+    builder.json["extensionsUsed"].push_back(name);
+    builder.json["extensionsRequired"].push_back(name);
+  }
   builder.json["materials"][0] = {{"extensions", extensions}};
   return builder.import();
 }
