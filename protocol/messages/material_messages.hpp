@@ -101,7 +101,8 @@ struct MaterialInfo {
         field("transmission", &MaterialInfo::transmission,
               "Fraction of light that passes, factor on the texture, if any."),
         field("thickness", &MaterialInfo::thickness,
-              "Thickness below the surface, factor on the texture, if any; 0: thin walled.")
+              "Thickness below the surface in the mesh's space, factor on the texture, if any; 0: "
+              "thin walled.")
             .unit("metres"),
         field("attenuation_distance", &MaterialInfo::attenuation_distance,
               "Distance after which light has the attenuation colour; 0: infinite.")
@@ -221,7 +222,8 @@ struct MaterialPatch {
         field("transmission", &MaterialPatch::transmission,
               "Fraction of light that passes, of materials whose file lets light through.")
             .range(0, 1),
-        field("thickness", &MaterialPatch::thickness, "Thickness; 0: thin walled.")
+        field("thickness", &MaterialPatch::thickness,
+              "Thickness in the mesh's space; 0: thin walled.")
             .range(0, 1e6)
             .unit("metres"),
         field("attenuation_distance", &MaterialPatch::attenuation_distance,

@@ -53,7 +53,7 @@ void main() {
     vec3 weight = uintBitsToFloat(uvec3(ray.user, ray.padding0, ray.padding1));
     if (hit.instance == hit_none) {
       // The mesh is not closed: as if its volume were as thick as the material says.
-      weight *= exp(-layers[medium].absorption);
+      weight *= exp(-layers[medium].absorption * instances[entered.instance].scale);
     } else {
       weight *= left_by_volume(medium, hit.t);
       float width = cone_width(camera_cone(), entered.t + hit.t);

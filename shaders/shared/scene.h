@@ -44,7 +44,7 @@ struct MaterialLayer {
   float specular;
   vec3 sheen;
   float sheen_roughness;
-  vec3 absorption;  // of light that passes: exponents, after the whole thickness
+  vec3 absorption;  // of light that passes: exponents, after the whole thickness in mesh space
   float transmission;
   float dielectric;  // reflectance by the index of refraction, head on
   float coat;        // fraction of the surface that lies under a clear coat
@@ -123,7 +123,7 @@ struct Instance {
   uint flags;  // instance_flipped where world changes the handedness (negative determinant)
   uint previous_vertex;  // its mesh's first vertex among those of the frame before, + 1; 0: the
                          // mesh keeps its shape
-  uint padding0;
+  float scale;           // mesh -> world, of the thickness of volumes
 };
 SHARED_CONSTANT uint instance_flipped = 1u;
 
@@ -134,6 +134,7 @@ struct DrawConstants {
   vec4 previous_world[3];
   uint instance;
   uint flags;
+  float scale;
 };
 
 // So many lights are read from a uniform block, which is fastest and holds 16 KiB on every device;

@@ -19,6 +19,7 @@ void move_instance(shared::Instance& instance, const glm::mat4& world) {
   instance.normal_matrix =
       determinant != 0.0f ? glm::mat4(glm::transpose(glm::inverse(linear))) : glm::mat4(1.0f);
   instance.flags = determinant < 0.0f ? shared::instance_flipped : 0u;
+  instance.scale = scene::length_scale(world);
 }
 
 shared::DrawConstants draw_constants(const shared::Instance& instance, std::uint32_t index) {
@@ -31,6 +32,7 @@ shared::DrawConstants draw_constants(const shared::Instance& instance, std::uint
   }
   constants.instance = index;
   constants.flags = instance.flags;
+  constants.scale = instance.scale;
   return constants;
 }
 

@@ -92,11 +92,13 @@ void describe_extensions(const FileMaterial& material, MaterialInfo& info) {
   info.anisotropy_rotation = from.anisotropy_rotation;
   info.diffuse_transmission = from.diffuse_transmission;
   info.diffuse_transmission_color = to_protocol(from.diffuse_transmission_color);
-  if (!transmits(material)) return;
-  info.transmission = from.transmission;
+  // What attenuates transmitted light attenuates light that scatters through, too, which every lit
+  // material may let pass.
   info.thickness = from.thickness;
   info.attenuation_distance = from.attenuation_distance;
   info.attenuation_color = to_protocol(from.attenuation_color);
+  if (!transmits(material)) return;
+  info.transmission = from.transmission;
   info.dispersion = from.dispersion;
 }
 

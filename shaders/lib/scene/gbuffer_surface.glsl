@@ -118,7 +118,7 @@ SurfaceLayer layer_here(vec3 normal, out ThinFilm film) {
   texels.sheen = detail(sheen_color_map, slot_uv(layer.sheen_color_texture)).rgb;
   texels.sheen_roughness = detail(sheen_roughness_map, slot_uv(layer.sheen_roughness_texture)).a;
   texels.transmission = detail(transmission_map, slot_uv(layer.transmission_texture)).r;
-  texels.thickness = detail(thickness_map, slot_uv(layer.thickness_texture)).g;
+  texels.thickness = detail(thickness_map, slot_uv(layer.thickness_texture)).g * draw.scale;
   texels.iridescence = detail(iridescence_map, slot_uv(layer.iridescence_texture)).r;
   texels.film = detail(film_map, slot_uv(layer.film_texture)).g;
   vec3 grain_texel = detail(anisotropy_map, slot_uv(layer.anisotropy_texture)).rgb;

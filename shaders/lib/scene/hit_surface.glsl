@@ -50,6 +50,7 @@ struct HitSurface {
 struct HitTriangle {
   mat3x4 world;  // rows: mesh -> world
   float handedness;  // -1 where the matrix changes the handedness, or 1
+  float scale;       // mesh -> world, of the thickness of volumes
   Vertex a, b, c;
   vec3 weights;
   uint material;
@@ -60,6 +61,7 @@ HitTriangle load_triangle(Hit hit) {
   mat4 world = instances[hit.instance].world;
   t.world = mat3x4(transpose(world));
   t.handedness = (instances[hit.instance].flags & instance_flipped) != 0u ? -1.0 : 1.0;
+  t.scale = instances[hit.instance].scale;
   Mesh mesh = meshes[instances[hit.instance].mesh];
   uint first = mesh.first_index + 3u * hit.triangle;
   t.a = vertices[mesh.first_vertex + indices[first]];
@@ -167,7 +169,7 @@ SurfaceLayer evaluate_layer(HitTriangle t, TextureLookup lookup, vec3 normal, ou
   texels.sheen = slot_texel(from.sheen_color_texture, lookup).rgb;
   texels.sheen_roughness = slot_texel(from.sheen_roughness_texture, lookup).a;
   texels.transmission = slot_texel(from.transmission_texture, lookup).r;
-  texels.thickness = slot_texel(from.thickness_texture, lookup).g;
+  texels.thickness = slot_texel(from.thickness_texture, lookup).g * t.scale;
   texels.iridescence = slot_texel(from.iridescence_texture, lookup).r;
   texels.film = slot_texel(from.film_texture, lookup).g;
   vec3 grain_texel = vec3(1.0);

@@ -14,7 +14,7 @@ struct LayerTexels {
   vec3 sheen;
   float sheen_roughness;
   float transmission;
-  float thickness;
+  float thickness;  // times the instance's scale
   float iridescence;
   float film;
   float anisotropy;

@@ -151,6 +151,8 @@ TEST_F(LayersKernel, MatchesShadersForEveryLayer) {
   }
   KernelComparison({.layers = all_of_them, .orthographic = true}).expect_equal("orthographic");
   KernelComparison({.layers = film, .orthographic = true}).expect_equal("film, orthographic");
+  KernelComparison({.layers = textured_diffuse_transmission, .scale = 2.5f})
+      .expect_equal("diffuse transmission, scaled");
 }
 
 TEST_F(LayersKernel, MatchesShadersForAreaLights) {
@@ -166,6 +168,7 @@ TEST_F(LayersKernel, MatchesShadersForBlendedSurfaces) {
       {"plain", {.alpha = 0.6f}},
       {"orthographic", {.alpha = 0.6f, .orthographic = true}},
       {"transmission", {.layers = transmission}},
+      {"transmission, scaled", {.layers = transmission, .scale = 2.5f}},
       {"diffuse transmission", {.layers = diffuse_transmission, .areas = true, .alpha = 0.6f}},
       {"layers", {.layers = all_of_them, .areas = true, .alpha = 0.6f}}};
   for (auto [name, which] : cases) {

@@ -82,6 +82,7 @@ TEST_F(TracePathsKernel, MatchesShader) {
       {"diffuse transmission", {.layers = diffuse_transmission}},
       {"diffuse transmission, textured, emissive",
        {.layers = textured_diffuse_transmission, .areas = true, .shines = true}},
+      {"diffuse transmission, scaled", {.layers = textured_diffuse_transmission, .scale = 2.5f}},
       {"all, textured, emissive", {.layers = all_of_them, .areas = true, .shines = true}}};
   for (const auto& [name, which] : cases) {
     for (const int bounces : {1, 4}) {

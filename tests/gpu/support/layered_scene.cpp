@@ -118,8 +118,12 @@ std::shared_ptr<const scene::Scene> layered_scene(const LayeredCase& which) {
     return made;
   };
   const auto at = [](const glm::vec3& to) { return glm::translate(glm::mat4(1.0f), to); };
-  const auto ball = builder.add_sphere(0.6f, material({0.8f, 0.4f, 0.2f}, 0.5f, 0.0f));
-  builder.place(ball, at({-0.7f, 0.0f, 0.0f})).place(ball, at({0.2f, 0.1f, -1.2f}));
+  const auto scaled_at = [&](const glm::vec3& to) {
+    return glm::scale(at(to), glm::vec3(which.scale));
+  };
+  const auto ball =
+      builder.add_sphere(0.6f / which.scale, material({0.8f, 0.4f, 0.2f}, 0.5f, 0.0f));
+  builder.place(ball, scaled_at({-0.7f, 0.0f, 0.0f})).place(ball, scaled_at({0.2f, 0.1f, -1.2f}));
   shared::Material panel = material({0.9f, 0.8f, 0.6f}, 0.25f, 0.7f);
   if (which.shines) panel.emissive = {3.0f, 2.0f, 1.0f};
   builder.place(

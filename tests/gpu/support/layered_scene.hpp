@@ -28,6 +28,7 @@ struct LayeredCase {
   bool orthographic = false;
   bool unoccluded = false;  // every ray finds what it looks for
   bool shines = false;      // the panel is an emissive light
+  float scale = 1.0f;       // of the spheres' instances; their meshes are as much smaller
 };
 
 /// Two layered spheres and a panel on a plain floor, lit by punctual lights, or by areas, one of

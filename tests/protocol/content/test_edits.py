@@ -140,6 +140,19 @@ class Edits(ServerTestCase):
             self.assertEqual(back, dark)
             self.assertLess(difference(self.image(), before), 0.5 * difference(edited, before))
 
+    def test_a_volume_tints_light_that_scatters_through(self):
+        self.assertEqual(self.material()["thickness"], 0)
+        self.server.call("settings.patch", {"patch": {"environment": {"intensity": 1}}})
+        white = self.patch_material(diffuse_transmission=1.0)["material"]
+        before = self.image()
+        volume = {"thickness": 1, "attenuation_distance": 0.1, "attenuation_color": [1, 0, 0]}
+        changed = self.patch_material(**volume)["material"]
+        self.assertEqual(set(changed["changed"]), {"diffuse_transmission"} | set(volume))
+        tinted = self.image()
+        self.assertGreater(difference(tinted, before), 0.1)
+        self.assertEqual(self.patch_material(**dict.fromkeys(volume))["material"], white)
+        self.assertLess(difference(self.image(), before), 0.5 * difference(tinted, before))
+
     def test_factors_of_extensions_have_limits(self):
         for patch, path, limit in (({"clearcoat": 1.5}, "patch.clearcoat", "0 to 1"),
                                    ({"ior": 0.5}, "patch.ior", ""),

@@ -1,9 +1,9 @@
 import assert from "node:assert/strict";
 import test from "node:test";
-import type { MaterialPatch } from "heliograph/messages.ts";
+import type { MaterialInfo, MaterialPatch } from "heliograph/messages.ts";
 import { RpcPeer } from "heliograph/rpc.ts";
 import { Signal } from "../../src/common/signal.ts";
-import { emissionOf, factors, radianceOf } from "../../src/panel/scene/material_rows.ts";
+import { emissionOf, factors, isOffered, radianceOf } from "../../src/panel/scene/material_rows.ts";
 import { UndoHistory } from "../../src/session/history/undo_history.ts";
 import { checkedEdits, editsOf } from "../../src/session/scene_edits.ts";
 import { SceneParts } from "../../src/session/scene_parts.ts";
@@ -43,6 +43,21 @@ test("every factor of a material has one row", () => {
   const elsewhere = ["base_color", "roughness", "metallic", "emissive"];
   const shown = [...elsewhere, ...factors.map(({ member }) => member)];
   assert.deepEqual(shown.sort(), Object.keys(patch).sort());
+});
+
+test("a volume is offered where light passes, straight or scattered", () => {
+  const volume = ["thickness", "attenuation_distance", "attenuation_color"];
+  const offered = (change: Partial<MaterialInfo>): string[] => {
+    const paper = { ...patch, transmission: undefined, name: "paper", textures: [], changed: [] };
+    const material = { ...paper, ...change };
+    return factors
+      .filter((factor) => isOffered(factor, material as MaterialInfo))
+      .map(({ member }) => member)
+      .filter((member) => volume.includes(member));
+  };
+  assert.deepEqual(offered({}), []);
+  assert.deepEqual(offered({ diffuse_transmission: 0.5 }), volume);
+  assert.deepEqual(offered({ transmission: 0 }), volume);
 });
 
 test("emission is a colour and a strength, and a dark colour emits as much as a bright one", () => {

@@ -34,7 +34,7 @@ class BoundaryCrossing {
     const Integer instance = entered.whole(HELIOGRAPH_WORD(shared::Hit, instance));
     const Integer medium = layer_number(scene_, instance);
     // The mesh is not closed: as if its volume were as thick as the material says.
-    Float3 left = left_by_thickness(scene_, medium);
+    Float3 left = left_by_thickness(scene_, instance, medium);
     Mask stays = hn::FirstN(tag, 0);
     if (!none(hit.met)) {
       left = select(hit.met, left_by_volume(scene_, medium, hit.t), left);

@@ -46,16 +46,34 @@ glm::vec3 attenuation(const MaterialLayers& from) {
   return -glm::log(color) / from.attenuation_distance;
 }
 
-/// After the whole thickness.
+/// After the whole thickness, in mesh space.
 glm::vec3 absorption(const MaterialLayers& from) {
   return attenuation(from) * from.thickness;
 }
 
-/// Transmitted fraction of light, averaged over colors and texels.
-float passing(const Scene& scene, const shared::Material& material, const MaterialLayers& from) {
+/// Per material, the mean length_scale() of its instances, in the default pose; 1 without any.
+std::vector<float> mean_scales(const Scene& scene) {
+  std::vector<double> sums(scene.materials.size());
+  std::vector<std::uint32_t> counts(scene.materials.size());
+  for (const Instance& instance : scene.instances) {
+    const std::uint32_t material = scene.meshes[instance.mesh].material;
+    sums[material] += length_scale(scene.nodes[instance.node].world);
+    ++counts[material];
+  }
+  std::vector<float> means;
+  for (std::size_t i = 0; i < sums.size(); ++i) {
+    means.push_back(counts[i] > 0 ? static_cast<float>(sums[i] / counts[i]) : 1.0f);
+  }
+  return means;
+}
+
+/// Transmitted fraction of light, averaged over colors and texels. `scale`: of the thickness.
+float passing(const Scene& scene, const shared::Material& material, const MaterialLayers& from,
+              float scale) {
+  const float thickness = scale * mean_texel(scene, from.thickness_texture).y;
   const glm::vec3 tint = glm::vec3(material.base_color) *
                          mean_texel(scene, material.base_color_texture) *
-                         glm::exp(-absorption(from) * mean_texel(scene, from.thickness_texture).y);
+                         glm::exp(-absorption(from) * thickness);
   const float metallic =
       material.metallic * mean_texel(scene, material.metallic_roughness_texture).z;
   return from.transmission * mean_texel(scene, from.transmission_texture).x * (1.0f - metallic) *
@@ -63,12 +81,13 @@ float passing(const Scene& scene, const shared::Material& material, const Materi
 }
 
 /// Treats a transmissive surface as a blended one, with the transmitted fraction as transparency.
-void let_light_through(const Scene& scene, shared::Material& material, const MaterialLayers& from) {
+void let_light_through(const Scene& scene, shared::Material& material, const MaterialLayers& from,
+                       float scale) {
   if (!(material.flags & shared::material_alpha_blend)) {
     material.base_color.w = 1.0f;
     material.flags |= shared::material_alpha_blend | shared::material_whole_alpha;
   }
-  material.passing = std::min(passing(scene, material, from), 1.0f - least_coverage);
+  material.passing = std::min(passing(scene, material, from, scale), 1.0f - least_coverage);
 }
 
 }  // namespace
@@ -163,12 +182,13 @@ shared::MaterialLayer layer_of(const shared::Material& material, const MaterialL
 
 void build_layers(Scene& scene) {
   scene.layers = {plain_layer()};
+  const std::vector<float> scales = mean_scales(scene);
   for (std::size_t i = 0; i < scene.materials.size(); ++i) {
     shared::Material& material = scene.materials[i];
     if (material.flags & shared::material_unlit) continue;
     const MaterialLayers& from = scene.material_layers[i];
     const shared::MaterialLayer layer = layer_of(material, from);
-    if (layer.transmission > 0.0f) let_light_through(scene, material, from);
+    if (layer.transmission > 0.0f) let_light_through(scene, material, from, scales[i]);
     auto found = std::ranges::find_if(
         scene.layers, [&](const shared::MaterialLayer& known) { return same(known, layer); });
     if (found == scene.layers.end()) found = scene.layers.insert(scene.layers.end(), layer);

@@ -21,7 +21,8 @@ shared::MaterialLayer layer_of(const shared::Material& material, const MaterialL
 
 /// Creates scene.layers from the materials' extensions, without duplicates, and links the materials
 /// to them. Transmissive surfaces (KHR_materials_transmission) become blended ones: see README.md.
-/// The scene's images must be decoded, because the mean transmission depends on them.
+/// The scene's images must be decoded and its instances placed, because the mean transmission
+/// depends on them.
 void build_layers(Scene& scene);
 
 }  // namespace heliograph::scene

@@ -44,13 +44,16 @@ TEST(MaterialEdits, ListsTheFactorsThatAMaterialCanHave) {
   EXPECT_EQ(paint.ior, 1.5f);
   EXPECT_EQ(paint.specular_color, (Vec3{1, 1, 1}));
   EXPECT_EQ(paint.clearcoat, 0.0f);
-  EXPECT_FALSE(paint.transmission || paint.thickness || paint.alpha_cutoff);
+  EXPECT_FALSE(paint.transmission || paint.dispersion || paint.alpha_cutoff);
+  EXPECT_EQ(paint.thickness, 0.0f);
+  EXPECT_EQ(paint.attenuation_color, (Vec3{1, 1, 1}));
   EXPECT_EQ(find(edits, "coat").clearcoat, 0.5f);
   EXPECT_EQ(find(edits, "glass").transmission, 0.9f);
   EXPECT_EQ(find(edits, "glass").attenuation_distance, 0.0f);
   EXPECT_EQ(find(edits, "leaf").alpha_cutoff, 0.5f);
   EXPECT_FALSE(find(edits, "leaf").transmission);
-  EXPECT_FALSE(find(edits, "sign").ior || find(edits, "sign").specular);
+  const auto& sign = find(edits, "sign");
+  EXPECT_FALSE(sign.ior || sign.specular || sign.thickness || sign.attenuation_distance);
 }
 
 TEST(MaterialEdits, AMaterialWithoutALayerGetsOneOfItsOwn) {
@@ -123,6 +126,28 @@ TEST(MaterialEdits, AnyLitMaterialMayScatterLightToItsOtherSide) {
   MaterialEdits others(scene);
   ASSERT_TRUE(others.apply(document));
   EXPECT_EQ(edits.list(), others.list());
+}
+
+TEST(MaterialEdits, VolumesTintLightThatScattersThrough) {
+  const auto scene = extended_scene();
+  MaterialEdits edits(scene);
+  const auto without = edits.patch({"paint",
+                                    {.thickness = {0.5f},
+                                     .attenuation_distance = {2.0f},
+                                     .attenuation_color = {Vec3{0.25f, 1, 1}}}});
+  ASSERT_TRUE(without);
+  EXPECT_EQ(edits.device()->front().layer, 0u) << "no light passes yet";
+  ASSERT_TRUE(edits.patch({"paint", {.diffuse_transmission = {0.5f}}}));
+  EXPECT_NEAR(layer_of_material(edits, 0).absorption.x, 0.25f * std::log(4.0f), 1e-6f);
+  EXPECT_EQ(layer_of_material(edits, 0).absorption.y, 0.0f);
+  EXPECT_EQ(layer_of_material(edits, 0).transmission, 0.0f);
+  ASSERT_TRUE(edits.patch({"leaf", {.diffuse_transmission = {1.0f}, .thickness = {1.0f}}}));
+  protocol::EditDocument document;
+  edits.describe_edits(document);
+  MaterialEdits others(scene);
+  ASSERT_TRUE(others.apply(document));
+  EXPECT_EQ(edits.list(), others.list());
+  EXPECT_EQ(edits.patch({"sign", {.thickness = {1.0f}}}).error().path, "patch.thickness");
 }
 
 TEST(MaterialEdits, RefusesFactorsThatAMaterialCannotHave) {

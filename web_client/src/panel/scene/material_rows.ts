@@ -39,11 +39,19 @@ interface SliderFactor extends SliderParts {
   member: NumberMember;
   /** The texture without which the factor changes nothing. */
   needs?: string;
+  /** Whether the factor changes something of a material; always, if left out. */
+  shows?: Condition;
 }
 interface ColourFactor {
   member: ColourMember;
   label: string;
+  shows?: Condition;
 }
+type Condition = (material: MaterialInfo) => boolean;
+
+/** Light passes below the surface, straight or scattered. */
+const letsLightThrough: Condition = ({ transmission, diffuse_transmission: diffuse }) =>
+  transmission !== undefined || (diffuse ?? 0) > 0;
 
 const slider = (
   member: NumberMember,
@@ -114,14 +122,15 @@ export const factors: readonly (SliderFactor | ColourFactor)[] = [
     unit: "metres",
     maximum: 10,
     scale: "cubic",
+    shows: letsLightThrough,
   }),
   slider(
     "attenuation_distance",
     "Attenuation distance",
     "After so much, white light has the attenuation colour; 0: it never has.",
-    { unit: "metres", maximum: 10, scale: "cubic" },
+    { unit: "metres", maximum: 10, scale: "cubic", shows: letsLightThrough },
   ),
-  { member: "attenuation_color", label: "Attenuation colour" },
+  { member: "attenuation_color", label: "Attenuation colour", shows: letsLightThrough },
   slider("dispersion", "Dispersion", "How far the colours are bent apart; diamond has 0.36.", {
     maximum: 2,
   }),
@@ -169,26 +178,34 @@ export function createMaterialRows(patch: Patch): MaterialRows {
   };
 }
 
-function createSlider({ member, needs, ...parts }: SliderFactor, patch: Patch): MaterialRows {
-  const row = createSliderRow(parts, (value) => patch({ [member]: value }));
+/** Whether a material has the factor, and it changes something of it. */
+export function isOffered(
+  factor: Pick<SliderFactor, "needs" | "shows"> & { member: NumberMember | ColourMember },
+  material: MaterialInfo,
+): boolean {
+  const { member, needs, shows } = factor;
+  if (material[member] === undefined) return false;
+  if (needs !== undefined && !material.textures.includes(needs)) return false;
+  return shows === undefined || shows(material);
+}
+
+function createSlider(factor: SliderFactor, patch: Patch): MaterialRows {
+  const row = createSliderRow(factor, (value) => patch({ [factor.member]: value }));
   const show = (material: MaterialInfo): void => {
-    const value = material[member];
-    row.node.hidden = value === undefined || (needs !== undefined && !has(material, needs));
+    const value = material[factor.member];
+    row.node.hidden = !isOffered(factor, material);
     if (value !== undefined) row.show(value);
   };
   return { nodes: [row.node], show };
 }
 
-function has(material: MaterialInfo, texture: string): boolean {
-  return material.textures.includes(texture);
-}
-
-function createColour({ member, label }: ColourFactor, patch: Patch): MaterialRows {
+function createColour(factor: ColourFactor, patch: Patch): MaterialRows {
+  const { member, label } = factor;
   const input = colourInput(member, label, (colour) => patch({ [member]: colour }));
   const node = field(label, input);
   const show = (material: MaterialInfo): void => {
     const value = material[member];
-    node.hidden = value === undefined;
+    node.hidden = !isOffered(factor, material);
     if (value !== undefined) input.value = displayColour(value);
   };
   return { nodes: [node], show };

@@ -139,6 +139,7 @@ struct HitRecords {
   Records instance;
   MatrixLanes world;
   Float handedness;
+  Float scale;  // mesh -> world, of the thickness of volumes
   Float4 mesh;
   Records material;
   TriangleLanes triangle;
@@ -147,7 +148,8 @@ struct HitRecords {
       : instance(scene.instances, hit.instance, sizeof(shared::Instance) / 4),
         world(instance, HELIOGRAPH_WORD(shared::Instance, world)),
         handedness(one()),
-        mesh(mesh_of(scene, instance, handedness)),
+        scale(one()),
+        mesh(mesh_of(scene, instance, handedness, scale)),
         material(scene.materials, as_integer(mesh.w), sizeof(Material) / 4),
         triangle(scene.vertices, scene.indices,
                  hn::Add(as_integer(mesh.x), hn::Mul(hit.triangle, integer(3))), as_integer(mesh.z),
@@ -155,12 +157,14 @@ struct HitRecords {
 
  private:
   static HWY_INLINE Float4 mesh_of(const SceneView& scene, const Records& instance,
-                                   Float& handedness) {
-    static_assert(offsetof(shared::Instance, flags) == offsetof(shared::Instance, mesh) + 4);
+                                   Float& handedness, Float& scale) {
+    static_assert(offsetof(shared::Instance, flags) == offsetof(shared::Instance, mesh) + 4 &&
+                  offsetof(shared::Instance, scale) == offsetof(shared::Instance, mesh) + 12);
     const Float4 attributes = instance.four(HELIOGRAPH_WORD(shared::Instance, mesh));
     const Integer flipped =
         hn::And(as_integer(attributes.y), integer(static_cast<int>(shared::instance_flipped)));
     handedness = select(float_mask(hn::Ne(flipped, integer(0))), number(-1.0f), one());
+    scale = attributes.w;
     static_assert(offsetof(shared::Mesh, first_vertex) == 8 &&
                   offsetof(shared::Mesh, material) == 12);
     return Records(scene.meshes, as_integer(attributes.x), sizeof(shared::Mesh) / 4).four(0);

@@ -133,11 +133,12 @@ HWY_INLINE LookupLanes texture_lookup(const TriangleLanes& triangle, const Recor
   return lookup;
 }
 
-/// What extensions add, with the textures of `slots`. `mapped`: the coat's normals. Not inlined: in
+/// What extensions add, with the textures of `slots`. `scale`: of the instances. Not inlined: in
 /// most scenes with layers few surfaces have any.
 template <bool one_level>
 HWY_NOINLINE void evaluate_layer(LayerSlots<one_level>& slots, const Records& from,
-                                 const Float3& coat_normal, SurfaceLayer<Float>& layer) {
+                                 const Float3& coat_normal, Float scale,
+                                 SurfaceLayer<Float>& layer) {
   static_assert(offsetof(Layer, specular) == 12 && offsetof(Layer, sheen_roughness) == 28 &&
                 offsetof(Layer, transmission) == 44 && offsetof(Layer, dielectric) == 48 &&
                 offsetof(Layer, coat_roughness) == 56);
@@ -161,7 +162,7 @@ HWY_NOINLINE void evaluate_layer(LayerSlots<one_level>& slots, const Records& fr
   layer.transmission = absorption.w * slots.texel(HELIOGRAPH_WORD(Layer, transmission_slot)).x;
   layer.transmitted = numbers(0.0f);
   if (none(hn::Gt(layer.transmission, zero()))) return;
-  const Float thickness = slots.texel(HELIOGRAPH_WORD(Layer, thickness_slot)).y;
+  const Float thickness = slots.texel(HELIOGRAPH_WORD(Layer, thickness_slot)).y * scale;
   const auto remaining = [&](Float exponent) HWY_ATTR {
     return layer.transmission * hn::Exp(tag, hn::Neg(exponent * thickness));
   };
@@ -197,7 +198,7 @@ HWY_NOINLINE void add_grain(LayerSlots<one_level>& slots, const Records& from,
 /// What of the diffuse light of surfaces leaves at their other side.
 template <bool one_level>
 HWY_NOINLINE void add_diffuse_transmission(LayerSlots<one_level>& slots, const Records& from,
-                                           SurfaceLayer<Float>& layer) {
+                                           Float scale, SurfaceLayer<Float>& layer) {
   static_assert(offsetof(Layer, diffuse_transmission) == offsetof(Layer, diffuse_tint) + 12);
   layer.diffuse_transmission = zero();
   layer.diffuse_tint = numbers(0.0f);
@@ -207,7 +208,7 @@ HWY_NOINLINE void add_diffuse_transmission(LayerSlots<one_level>& slots, const R
   layer.diffuse_transmission = factors.w * texel;
   const Float4 tint = slots.texel(HELIOGRAPH_WORD(Layer, diffuse_tint_slot));
   const Float3 absorption = from.triple(HELIOGRAPH_WORD(Layer, absorption));
-  const Float thickness = slots.texel(HELIOGRAPH_WORD(Layer, thickness_slot)).y;
+  const Float thickness = slots.texel(HELIOGRAPH_WORD(Layer, thickness_slot)).y * scale;
   const auto left = [&](Float factor, Float color, Float exponent) HWY_ATTR {
     return factor * color * hn::Exp(tag, hn::Neg(exponent * thickness));
   };
@@ -247,9 +248,9 @@ HWY_INLINE void add_layer(const SceneView& scene, const HitRecords& records,
   const Mask plain = float_mask(hn::Eq(number, integer(0)));
   evaluate_layer<one_level>(slots, from,
                             select(plain, numbers(glm::vec3(0.0f, 0.0f, 1.0f)), coat_normal) * side,
-                            s.layer);
+                            records.scale, s.layer);
   add_grain<one_level>(slots, from, records, vertex_normal, s.layer);
-  add_diffuse_transmission<one_level>(slots, from, s.layer);
+  add_diffuse_transmission<one_level>(slots, from, records.scale, s.layer);
   add_film<one_level>(slots, from, direction, s);
   s.passing = records.material.real(HELIOGRAPH_WORD(Material, passing));
   s.alpha = select(s.has(shared::material_whole_alpha), one(), s.alpha);

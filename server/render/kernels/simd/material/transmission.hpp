@@ -107,9 +107,13 @@ HWY_INLINE Float3 left_of(const Float3& exponents) {
   return {left(exponents.x), left(exponents.y), left(exponents.z)};
 }
 
-/// Fraction of light that is left after the thickness that each medium's material states.
-HWY_INLINE Float3 left_by_thickness(const SceneView& scene, Integer medium) {
-  return left_of(layer_records(scene, medium).triple(HELIOGRAPH_WORD(Layer, absorption)));
+/// Fraction of light that is left after the thickness that each medium's material states, as large
+/// as its instance makes it.
+HWY_INLINE Float3 left_by_thickness(const SceneView& scene, Integer instance_number,
+                                    Integer medium) {
+  const Records instance(scene.instances, instance_number, sizeof(shared::Instance) / 4);
+  return left_of(layer_records(scene, medium).triple(HELIOGRAPH_WORD(Layer, absorption)) *
+                 instance.real(HELIOGRAPH_WORD(shared::Instance, scale)));
 }
 
 /// Fraction of light that is left after `distance` metres of each medium.
