@@ -12,8 +12,11 @@ Result<ReferenceState> SessionReference::start(const protocol::ReferenceStart& r
   const protocol::Settings before = core_.settings;
   const auto applied = core_.patch_settings(ReferenceMode::start_patch(request), by);
   if (!applied) return applied.error();
+  const bool first_view_shown = core_.shows_first_view();
   core_.reference.start(before);
-  core_.changed(false);
+  // Another revision only where the camera that clients know is another one.
+  core_.changed(core_.shows_first_view() != first_view_shown);
+  core_.tell_camera_of_other_scene(first_view_shown);
   return state_locked();
 }
 

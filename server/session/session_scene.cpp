@@ -77,7 +77,7 @@ void SessionScene::show_first_view(std::shared_ptr<const scene::Scene> scene,
   core_.first_view = std::move(view);
   core_.changed();
   core_.first_view->scene_rev = core_.rev;
-  tell_camera(by);
+  core_.tell_camera(by);
 }
 
 void SessionScene::end_first_view() {
@@ -86,14 +86,7 @@ void SessionScene::end_first_view() {
   core_.camera.take_inputs(core_.first_view->camera);
   core_.first_view.reset();
   core_.changed();
-  if (core_.scene) tell_camera({});
-}
-
-/// All viewers: none has asked for it.
-void SessionScene::tell_camera(const std::string& by) {
-  core_.viewers.send_all(protocol::make_notification<protocol::notifications::camera_changed>(
-                             {.camera = core_.camera_message(), .by = by}),
-                         protocol::notifications::camera_changed::name);
+  if (core_.scene) core_.tell_camera({});
 }
 
 void SessionScene::unload(const std::string& by) {

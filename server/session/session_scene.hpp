@@ -78,7 +78,6 @@ class SessionScene {
   protocol::Result<void> adopt(const std::shared_ptr<const scene::Scene>& scene,
                                const protocol::EditDocument& document, const std::string& by);
   void edits_changed(const std::string& by);
-  void tell_camera(const std::string& by);
 
   SessionCore& core_;
 };

@@ -79,9 +79,11 @@ Result<void> SessionTimeline::request_step(StepRequest request) {
     if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded;
     if (const auto capacity = core_.timeline.check_capacity(); !capacity) return capacity;
     if (!core_.timeline.in_lockstep()) {
+      const bool first_view_shown = core_.shows_first_view();
       core_.timeline.enter_lockstep();
       core_.changed();
       notify_lockstep(request.viewer);
+      core_.tell_camera_of_other_scene(first_view_shown);
     }
     if (request.frames > 0) {
       core_.timeline.add_step(std::move(request), core_.snapshot(), core_.changes);
@@ -101,9 +103,11 @@ StepState SessionTimeline::leave_lockstep(const std::string& by) {
     const std::lock_guard lock(core_.mutex);
     unfinished = core_.timeline.remove_steps([](const StepRequest&) { return true; });
     if (core_.timeline.in_lockstep()) {
+      const bool first_view_shown = core_.shows_first_view();
       core_.timeline.leave_lockstep();
       core_.changed();
       notify_lockstep(by);
+      core_.tell_camera_of_other_scene(first_view_shown);
     }
     state = step_state();
   }

@@ -17,10 +17,8 @@ struct FirstView {
     state.first_view = true;
     state.scene = scene;
     state.resources = resources;
-    state.lights = nullptr;
-    state.materials = nullptr;
-    state.layers = nullptr;
-    state.hidden = nullptr;
+    state.parts = {};
+    state.edited_members = {};
     state.selected = nullptr;
     state.section = nullptr;
     state.animation = {};

@@ -84,6 +84,16 @@ void SessionCore::lead_camera(const std::string& by) {
   }
 }
 
+void SessionCore::tell_camera(const std::string& by) {
+  viewers.send_all(protocol::make_notification<protocol::notifications::camera_changed>(
+                       {.camera = camera_message(), .by = by}),
+                   protocol::notifications::camera_changed::name);
+}
+
+void SessionCore::tell_camera_of_other_scene(bool before) {
+  if (shows_first_view() != before) tell_camera({});
+}
+
 RenderState SessionCore::snapshot() const {
   const AnimationClock& clock = timeline.clock();
   RenderState state{.version = version,
@@ -91,10 +101,11 @@ RenderState SessionCore::snapshot() const {
                     .changed_at = changed_at,
                     .resources = resources,
                     .scene = scene,
-                    .lights = edits.device_lights(),
-                    .materials = edits.device_materials(),
-                    .layers = edits.device_layers(),
-                    .hidden = nodes.hidden_instances(),
+                    .parts = {.lights = edits.device_lights(),
+                              .materials = edits.device_materials(),
+                              .layers = edits.device_layers(),
+                              .hidden = nodes.hidden_instances()},
+                    .edited_members = edits.edited_members(),
                     .selected = nodes.selected_instances(),
                     .section = section.enabled(),
                     .environment = environment,
@@ -142,11 +153,13 @@ Result<protocol::SettingsApplied> SessionCore::patch_settings(const protocol::Ra
   }
   protocol::RawJson effective(*applied);
   if (patched != settings) {
+    const bool first_view_shown = shows_first_view();
     settings = std::move(patched);
     reference.settings_changed(settings);
     changed();
     notify_others<protocol::notifications::settings_changed>(
         by, {.rev = rev, .patch = effective, .by = by});
+    tell_camera_of_other_scene(first_view_shown);
   }
   return protocol::SettingsApplied{.rev = rev, .applied = std::move(effective)};
 }

@@ -79,6 +79,12 @@ struct SessionCore {
     return shows_first_view() ? first_view->scene_rev : scene_rev;
   }
   protocol::Camera camera_message() const { return shown_camera().message(rev, shown_scene_rev()); }
+  /// Tells the camera to all viewers, also to the one that has made the change: it did not ask for
+  /// another camera.
+  void tell_camera(const std::string& by);
+  /// The same if viewers see the other one of the two scenes since the change, where no viewer has
+  /// moved the camera. `before`: what shows_first_view() was.
+  void tell_camera_of_other_scene(bool before);
   /// Whether an input is meant for the scene that is shown: `asked` is its member scene_rev.
   protocol::Result<void> require_scene_of(const std::optional<std::uint32_t>& asked) const;
   protocol::Result<void> require_scene() const;

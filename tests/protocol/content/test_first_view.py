@@ -69,7 +69,8 @@ class FirstViews(ServerTestCase):
         images = list(large_images())
         content, binary = textured(images)
         # Each name is loaded once: what is in the cache has no first view.
-        for name in ("watched", "unwatched", "cancelled", "dragged", "retextured"):
+        for name in ("watched", "unwatched", "cancelled", "dragged", "stepped", "traced",
+                     "retextured"):
             write_glb(os.path.join(root, name + ".glb"), content, binary)
         damaged = images[:-1] + [images[-1][:-40] + b"\0" * 40]
         content, binary = textured(damaged)
@@ -162,6 +163,34 @@ class FirstViews(ServerTestCase):
             self.assertEqual(after["eye"], moved["eye"])
             self.assertEqual(after["scene_rev"], camera["scene_rev"], "the scene is the same")
             await viewer.rest()
+
+    async def test_programs_that_hide_the_first_view_bring_the_camera_of_before(self):
+        async with Viewer(self.server) as viewer:
+            for name, begin, end in (("stepped", ("frame.step", {"frames": 0, "dt": 0}), "frame.run"),
+                                     ("traced", ("reference.start", {}), "reference.stop")):
+                await viewer.call("scene.load", {"name": "mirror"})
+                before = await viewer.call("camera.get")
+                viewer.notifications.clear()
+                load, told = await self.load_until_seen(viewer, name)
+                first = told["camera"]
+                self.assertNotEqual(first["scene_rev"], before["scene_rev"])
+                viewer.notifications.clear()
+                await viewer.call(*begin)
+                told = await viewer.notification("camera.changed")
+                self.assertFalse(load.done(), "it was loaded before the camera was told")
+                self.assertEqual(told["camera"]["scene_rev"], before["scene_rev"])
+                self.assertEqual(told["camera"]["eye"], before["eye"])
+                self.assertGreater(told["camera"]["rev"], first["rev"])
+                viewer.notifications.clear()
+                await viewer.call(end)
+                told = await viewer.notification("camera.changed")
+                self.assertFalse(load.done(), "it was loaded before the camera was told")
+                self.assertEqual(told["camera"]["scene_rev"], first["scene_rev"])
+                self.assertEqual(told["camera"]["eye"], first["eye"])
+                await load
+                after = await viewer.call("camera.get")
+                self.assertEqual(after["scene_rev"], first["scene_rev"])
+                await viewer.rest()
 
     async def test_textures_wait_for_the_scene_that_is_being_loaded(self):
         status, _, answer = self.server.request("PUT", "/api/v1/images/red",

@@ -150,6 +150,44 @@ TEST_F(FirstViewTest, IsNotSeenInLockstep) {
   EXPECT_EQ(session_.camera().get()->name, "before camera");
 }
 
+TEST_F(FirstViewTest, TellsTheCameraWhenProgramsHideItAndShowItAgain) {
+  session_.scene().show(before_, "");
+  const std::uint32_t since = session_.camera().get()->scene_rev;
+  show_first();
+  const std::uint32_t first = session_.camera().get()->scene_rev;
+  std::size_t told = told_of_camera();
+  const auto expect_told = [&](std::uint32_t scene_rev, const char* what) {
+    EXPECT_EQ(told_of_camera(), ++told) << what;
+    const auto newest = std::find_if(link_->messages.rbegin(), link_->messages.rend(),
+                                     [](const nlohmann::json& message) {
+                                       return message.value("method", "") == "camera.changed";
+                                     });
+    ASSERT_NE(newest, link_->messages.rend());
+    const nlohmann::json& camera = newest->at("params").at("camera");
+    EXPECT_EQ(camera.at("scene_rev"), scene_rev) << what;
+    EXPECT_EQ(camera.at("rev"), session_.camera().get()->rev) << what;
+  };
+  const auto step = [&] {
+    return session_.timeline().request_step(
+        {.frames = 0, .viewer = "viewer", .done = [](const auto&) {}});
+  };
+  ASSERT_TRUE(step());
+  expect_told(since, "lockstep begins");
+  ASSERT_TRUE(step());
+  EXPECT_EQ(told_of_camera(), told) << "it has begun before";
+  session_.timeline().leave_lockstep("viewer");
+  expect_told(first, "lockstep ends");
+  ASSERT_TRUE(session_.reference().start({}, "viewer"));
+  expect_told(since, "a reference begins");
+  ASSERT_TRUE(session_.reference().start({}, "viewer"));
+  EXPECT_EQ(told_of_camera(), told) << "it has begun before";
+  ASSERT_TRUE(session_.reference().stop("viewer"));
+  expect_told(first, "a reference ends");
+  session_.scene().show(whole_, "viewer");
+  ASSERT_TRUE(step());
+  EXPECT_EQ(told_of_camera(), told) << "there is no other scene";
+}
+
 TEST_F(FirstViewTest, IsNoPartOfACopy) {
   session_.scene().show(before_, "");
   show_first();
