@@ -234,6 +234,8 @@ export interface SceneEntry {
   bytes: number;
   /** Name for scene.load. */
   name: string;
+  /** Whether it was uploaded: then DELETE /api/v1/scenes/NAME deletes it. */
+  uploaded: boolean;
 }
 
 /** Result of scene.list. */
@@ -352,7 +354,7 @@ export interface MaterialPatch {
   specular?: number | null;
   /** Linear colour of the dielectric reflection. */
   specular_color?: Vector3 | null;
-  /** Thickness; 0: thin walled. [metres] */
+  /** Thickness in the mesh's space; 0: thin walled. [metres] */
   thickness?: number | null;
   /** Fraction of light that passes, of materials whose file lets light through. */
   transmission?: number | null;
@@ -993,7 +995,10 @@ export interface MaterialInfo {
   specular_color?: Vector3;
   /** Members that have a texture. */
   textures: string[];
-  /** Thickness below the surface, factor on the texture, if any; 0: thin walled. [metres] */
+  /**
+   * Thickness below the surface in the mesh's space, factor on the texture, if any; 0: thin walled.
+   * [metres]
+   */
   thickness?: number;
   /** Fraction of light that passes, factor on the texture, if any. */
   transmission?: number;
@@ -1080,6 +1085,8 @@ export interface EnvironmentInfo {
   bytes: number;
   /** Name for environment.set. */
   name: string;
+  /** Whether it was uploaded: then DELETE /api/v1/environments/NAME deletes it. */
+  uploaded: boolean;
 }
 
 /** Result of environment.list. */
@@ -1693,6 +1700,16 @@ export interface SceneUnloadedNotification {
   name: string;
 }
 
+/** Parameters of the notification uploads.changed. */
+export interface UploadsChangedNotification {
+  /** Whether it was deleted; else uploaded. */
+  deleted: boolean;
+  /** What the file is. */
+  kind: "scene" | "environment" | "image";
+  /** Its name. */
+  name: string;
+}
+
 /** Parameters of the notification bookmarks.changed. */
 export interface BookmarksChangedNotification {
   /** The viewer that changed them; empty: the server. */
@@ -2113,6 +2130,8 @@ export interface Notifications {
   "scene.changed": SceneChangedNotification;
   /** The scene was unloaded. */
   "scene.unloaded": SceneUnloadedNotification;
+  /** A scene, environment or image was uploaded or deleted; for every viewer of the server. */
+  "uploads.changed": UploadsChangedNotification;
   /** Another viewer added, renamed or removed a bookmark. */
   "bookmarks.changed": BookmarksChangedNotification;
   /** Another viewer changed settings. */

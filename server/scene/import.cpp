@@ -17,6 +17,7 @@
 #include "scene/gltf/document/references.hpp"
 #include "scene/gltf/document/scene_choice.hpp"
 #include "scene/gltf/document/variants.hpp"
+#include "scene/gltf/environment/image_light.hpp"
 #include "scene/gltf/geometry/draco.hpp"
 #include "scene/gltf/geometry/meshes.hpp"
 #include "scene/gltf/geometry/primitives.hpp"
@@ -60,7 +61,11 @@ class Importer {
   template <class Source>
   Importer(Source source, std::string name, const ImportLimits& limits,
            const ImportOptions& options)
-      : limits_(limits), options_(options), stop_(options.stop), budget_(limits.scene_bytes) {
+      : limits_(limits),
+        options_(options),
+        stop_(options.stop),
+        budget_(limits.scene_bytes),
+        texels_(limits.texels) {
     const Stopwatch watch;
     report("reading", 0.0f);
     file_.emplace(std::move(source), limits, warnings_, stop_);
@@ -94,19 +99,26 @@ class Importer {
     const std::uint64_t image_bytes = options_.untextured ? image_file_bytes(*file_) : 0;
     const bool in_two_steps =
         options_.untextured && options_.textures.empty() && image_bytes >= options_.untextured_from;
+    ImageFiles image_files(*file_, limits_, stop_);
+    timed(times_.images, [&] {
+      scene_.environment = read_image_light(
+          model, shown, {image_files, limits_, texels_, budget_, warnings_, stop_});
+    });
     std::vector<ImageSource> images;
-    if (!in_two_steps) images = read_image_sources(*file_, limits_, stop_);
+    if (!in_two_steps) images = image_files.take_all();
     const std::vector<SourceFile> replacing =
         override_textures(options_.textures, scene_, textures, images, limits_, stop_);
 
-    times_.check = watch.lap();
+    times_.check = watch.lap() - times_.images;
     scene_.textures = textures.used_textures();
     const auto build = [&](PartsDone& done) {
       return timed(times_.geometry,
                    [&] { build_meshes(primitives, accessors, mesh_materials, done); });
     };
     const auto place = [&] {
-      scene_.clips = read_clips(model, accessors, nodes, budget_, warnings_);
+      Animations animations = read_animations(model, accessors, nodes, budget_, warnings_);
+      scene_.clips = std::move(animations.clips);
+      scene_.animated_slots = std::move(animations.slots);
       scene_.skins = read_skins(model, accessors, nodes, budget_);
       scene_.nodes = nodes.nodes;
       place_objects(scene_, nodes, {primitives, lights, cameras},
@@ -125,7 +137,7 @@ class Importer {
       PartsDone done([&](float fraction) { report("textures", 0.2f + 0.75f * fraction); }, uses,
                      stop_);
       timed(times_.images, [&] {
-        images = read_image_sources(*file_, limits_, stop_);
+        images = image_files.take_all();
         decode(images, textures, done);
       });
     } else {
@@ -156,17 +168,17 @@ class Importer {
     if (options_.progress) options_.progress(stage, fraction);
   }
 
-  /// Runs `task`, and sets `seconds` to the time that it took.
+  /// Runs `task`, and adds the time that it took to `seconds`.
   template <class Task>
   static void timed(double& seconds, const Task& task) {
     const Stopwatch watch;
     task();
-    seconds = watch.seconds();
+    seconds += watch.seconds();
   }
 
   void decode(std::span<const ImageSource> sources, const TextureTable& textures, PartsDone& done) {
     const KeptLevels kept{options_.kept_textures, images_with_alpha(textures)};
-    decoded_ = decode_images(sources, textures.image_uses(), kept, limits_, stop_,
+    decoded_ = decode_images(sources, textures.image_uses(), kept, limits_, texels_, stop_,
                              [&] { done.add_one(); });
   }
 
@@ -247,6 +259,7 @@ class Importer {
   const std::stop_token& stop_;
   std::optional<GltfFile> file_;
   ByteBudget budget_;
+  TexelBudget texels_;
   ImportTimes times_;
   Warnings warnings_;
   DecodedImages decoded_;

@@ -1,7 +1,10 @@
 #include "scene/scene.hpp"
 
+#include <cmath>
 #include <cstddef>
 #include <set>
+
+#include "scene/environment.hpp"
 
 namespace heliograph::scene {
 namespace {
@@ -43,11 +46,26 @@ Bounds world_bounds(const Bounds& mesh, const glm::mat4& world) {
   return bounds;
 }
 
+float length_scale(const glm::mat4& world) {
+  const double determinant = glm::determinant(glm::dmat3(world));  // floats would overflow
+  return static_cast<float>(std::cbrt(std::abs(determinant)));
+}
+
 glm::mat4 Transform::matrix() const {
   glm::mat4 matrix = glm::mat4_cast(rotation);
   for (int axis = 0; axis < 3; ++axis) matrix[axis] *= scale[axis];
   matrix[3] = glm::vec4(translation, 1.0f);
   return matrix;
+}
+
+// Translation * rotation * scale. The sample matrix in the text of KHR_texture_transform rotates
+// the other way; its test model and the implementations agree on this one
+// (github.com/KhronosGroup/glTF/issues/1563).
+void TextureTransform::apply(shared::TextureSlot& slot) const {
+  const float cosine = std::cos(rotation);
+  const float sine = std::sin(rotation);
+  slot.transform_row0 = {cosine * scale.x, sine * scale.y, offset.x, 0.0f};
+  slot.transform_row1 = {-sine * scale.x, cosine * scale.y, offset.y, 0.0f};
 }
 
 std::uint64_t Scene::bytes() const {
@@ -67,7 +85,9 @@ std::uint64_t Scene::bytes() const {
   }
   for (const Clip& clip : clips) {
     for (const Channel& channel : clip.channels) sum += size(channel.times) + size(channel.values);
+    for (const Track& track : clip.tracks) sum += size(track.times) + size(track.values);
   }
+  if (environment) sum += size(environment->radiance);
   return sum;
 }
 

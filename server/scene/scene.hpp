@@ -16,6 +16,8 @@
 
 namespace heliograph::scene {
 
+struct Environment;
+
 struct Bounds {
   glm::vec3 minimum{1e30f};
   glm::vec3 maximum{-1e30f};
@@ -28,6 +30,11 @@ struct Bounds {
 
 /// A box around a box of a mesh's space, in the world; empty for an empty one.
 Bounds world_bounds(const Bounds& mesh, const glm::mat4& world);
+
+/// By how much `world` makes lengths larger: the edge of the cube into whose volume it makes a cube
+/// of edge 1. Of a scale that is the same along all axes it is that scale. KHR_materials_volume
+/// gives thicknesses no direction along which to measure others.
+float length_scale(const glm::mat4& world);
 
 /// RGBA8 pixels, top row first; mip levels in order, the last is 1x1. `srgb`: color channels are
 /// sRGB encoded; mips were filtered in linear space. `pixels` may be released after upload;
@@ -84,6 +91,7 @@ struct Node {
   glm::mat4 world{1.0f};
   std::optional<Transform> transform = std::nullopt;  // of `local`, unless the file has a matrix
   std::vector<float> weights = {};                    // default weights of its mesh's morph targets
+  bool visible = true;  // without a clip, with all below it; false only where a clip may show it
 };
 
 /// One mesh placed in the world by a node. Deforming meshes have one instance each, skinned ones a
@@ -103,6 +111,15 @@ struct Camera {
   float near_plane = 0.05f;          // metres
   float far_plane = 1000.0f;         // metres; orthographic only, perspective has none
   std::optional<std::uint32_t> node = std::nullopt;  // parent node
+  std::uint32_t number = 0;                          // in the file
+};
+
+/// What the file says of a punctual light (KHR_lights_punctual) that its device form has in
+/// combination only.
+struct PunctualLight {
+  std::uint32_t number = 0;  // in the file
+  glm::vec3 color{1.0f};
+  float intensity = 1.0f;
 };
 
 /// A light with its world-space device form and the name of its node.
@@ -111,6 +128,7 @@ struct Light {
   shared::Light device;
   float angular_diameter = 0.0f;                     // degrees, directional only
   std::optional<std::uint32_t> node = std::nullopt;  // parent node
+  std::optional<PunctualLight> punctual = std::nullopt;
 };
 
 /// Displacements of the vertices of a shape; an empty list displaces nothing.
@@ -158,9 +176,20 @@ inline shared::TextureSlot no_texture_slot() {
           .padding1 = 0};
 }
 
+/// KHR_texture_transform.
+struct TextureTransform {
+  glm::vec2 offset{0.0f};
+  float rotation = 0.0f;  // radians, counter-clockwise with v pointing down
+  glm::vec2 scale{1.0f};
+
+  void apply(shared::TextureSlot& slot) const;
+};
+
 /// Values of material extensions beyond metallic-roughness; defaults are neutral.
 struct MaterialLayers {
-  float specular = 1.0f;  // KHR_materials_specular
+  glm::vec3 emissive_factor{0.0f};  // shared::Material::emissive is the product
+  float emissive_strength = 1.0f;   // KHR_materials_emissive_strength
+  float specular = 1.0f;            // KHR_materials_specular
   glm::vec3 specular_color{1.0f};
   float clearcoat = 0.0f;
   float clearcoat_roughness = 0.0f;
@@ -168,7 +197,8 @@ struct MaterialLayers {
   glm::vec3 sheen_color{0.0f};
   float sheen_roughness = 0.0f;
   float transmission = 0.0f;
-  float thickness = 0.0f;             // metres in the mesh's space; 0: thin walled
+  float thickness = 0.0f;             // in the mesh's space, times length_scale() metres; 0: a
+                                      // thin wall
   float attenuation_distance = 0.0f;  // metres; 0: infinite
   glm::vec3 attenuation_color{1.0f};
   float dispersion = 0.0f;  // 20 / Abbe number
@@ -200,20 +230,84 @@ struct MaterialLayers {
 enum class Interpolation { step, linear, cubic_spline };
 enum class Property { translation, rotation, scale, weights };
 
-/// One animated property of a node: a curve through keys.
-struct Channel {
+/// Properties that clips animate by pointers, beside those of nodes (KHR_animation_pointer).
+enum class PointedProperty {
+  visible,  // of nodes
+  light_color,
+  light_intensity,
+  light_range,
+  inner_cone,
+  outer_cone,
+  vertical_fov,  // of cameras
+  orthographic_height,
+  base_color,
+  metallic,
+  roughness,
+  emissive,
+  emissive_strength,
+  normal_scale,
+  occlusion_strength,
+  ior,
+  specular,
+  specular_color,
+  clearcoat,
+  clearcoat_roughness,
+  clearcoat_normal_scale,
+  sheen_color,
+  sheen_roughness,
+  transmission,
+  thickness,
+  attenuation_distance,
+  attenuation_color,
+  dispersion,
+  iridescence,
+  iridescence_ior,
+  iridescence_thickness_minimum,
+  iridescence_thickness_maximum,
+  anisotropy,
+  anisotropy_rotation,
+  diffuse_transmission,
+  diffuse_transmission_color,
+  texture_offset,
+  texture_rotation,
+  texture_scale,
+};
+
+/// A value over time: keys, and what is between them.
+struct Curve {
+  Interpolation interpolation = Interpolation::linear;
+  std::uint32_t width = 3;        // numbers per value
+  std::vector<float> times = {};  // seconds, ascending
+  /// Per key one value; cubic spline: in-tangent, value, out-tangent.
+  std::vector<float> values = {};
+};
+
+/// One animated property of a node.
+struct Channel : Curve {
   std::uint32_t node = 0;
   Property property = Property::translation;
-  Interpolation interpolation = Interpolation::linear;
-  std::uint32_t width = 3;    // numbers per value
-  std::vector<float> times;   // seconds, ascending
-  std::vector<float> values;  // per key one value; cubic spline: in-tangent, value, out-tangent
+};
+
+/// One animated property of another kind.
+struct Track : Curve {
+  PointedProperty property = PointedProperty::visible;
+  /// A node or material of the scene, an AnimatedSlot for texture transforms, or the number that a
+  /// light or camera has in the file.
+  std::uint32_t object = 0;
+};
+
+/// A texture slot of a material whose transform a clip animates.
+struct AnimatedSlot {
+  std::uint32_t material = 0;
+  std::uint32_t kind = 0;      // in texture_kinds()
+  TextureTransform transform;  // of the file
 };
 
 struct Clip {
   std::string name;
   float duration = 0.0f;  // seconds: its last key
   std::vector<Channel> channels;
+  std::vector<Track> tracks = {};
 };
 
 /// A whole glTF scene, validated, ready for upload. Immutable once loaded. A scene that is shown
@@ -238,16 +332,18 @@ struct Scene {
   std::vector<Instance> instances;
   std::vector<Camera> cameras;
   std::vector<Light> lights;
+  std::shared_ptr<const Environment> environment;  // of EXT_lights_image_based; null: none
   SharedList<Shape> shapes;
   SharedList<Skin> skins;
   std::vector<Deformation> deformations;
   SharedList<Clip> clips;
+  std::vector<AnimatedSlot> animated_slots;
   Bounds bounds;  // world space
   std::vector<std::string> warnings;
   std::vector<SourceFile> sources;  // all files read, the scene's own first
 
   std::uint64_t triangle_count() const;  // of all instances
-  std::uint64_t bytes() const;           // memory of vertices, images and curves
+  std::uint64_t bytes() const;           // memory of vertices, images, curves and its environment
 };
 
 }  // namespace heliograph::scene

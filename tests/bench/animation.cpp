@@ -101,7 +101,7 @@ glm::vec3 place_of(int i) {
 
 /// A swing about the x axis with 60 keys.
 scene::Channel swing(std::uint32_t node, float degrees) {
-  scene::Channel channel{.node = node, .property = scene::Property::rotation, .width = 4};
+  scene::Channel channel{{.width = 4}, node, scene::Property::rotation};
   for (int key = 0; key <= 60; ++key) {
     const float time = float(key) / 60.0f;
     const float half = 0.5f * glm::radians(degrees) * std::sin(two_pi * time);
@@ -174,7 +174,7 @@ scene::Scene morphed_crowd(int count) {
   for (int i = 0; i < count; ++i) {
     const std::uint32_t node = add_node(scene, place_of(i));
     scene.nodes[node].weights = {0.0f, 0.0f};
-    scene::Channel channel{.node = node, .property = scene::Property::weights, .width = 2};
+    scene::Channel channel{{.width = 2}, node, scene::Property::weights};
     channel.times = {0.0f, 1.0f};
     channel.values = {0.0f, 1.0f, 1.0f, 0.0f};
     scene.clips[0].channels.push_back(channel);

@@ -27,8 +27,9 @@ protocol::Settings with_coverage(protocol::Settings settings,
 
 CoverageRenderer::CoverageRenderer(render::Engine& engine,
                                    std::shared_ptr<const render::SceneResources> scene,
-                                   const RenderTask& task)
-    : renderer_(engine),
+                                   const RenderTask& task, const RenderEdits& edits)
+    : edits_(edits),
+      renderer_(engine),
       clip_(task.request.clip),
       over_white_(with_coverage(task.settings, session::CoverageBackground::white)),
       over_black_(with_coverage(task.settings, session::CoverageBackground::black)) {
@@ -36,10 +37,12 @@ CoverageRenderer::CoverageRenderer(render::Engine& engine,
   renderer_.set_scene(std::move(scene));
   renderer_.set_size(size.width, size.height);
   renderer_.keep_buffers(false);
+  edits_.apply(renderer_);
 }
 
 std::vector<float> CoverageRenderer::measure(const Shot& shot,
                                              const std::function<bool()>& canceled) {
+  edits_.show(renderer_, shown_, clip_, shot.seconds);
   accept_coverage(renderer_.set_pose(clip_, shot.seconds));
   renderer_.set_camera(shot.camera);
   const std::vector<float> white = radiance(over_white_, canceled);

@@ -16,11 +16,10 @@ namespace heliograph::cli {
 /// on.
 class CoverageRenderer {
  public:
+  /// `edits`: changes of the scene; outlives this.
   CoverageRenderer(render::Engine& engine, std::shared_ptr<const render::SceneResources> scene,
-                   const RenderTask& task);
+                   const RenderTask& task, const RenderEdits& edits);
 
-  /// Changes of the scene; before the first measurement.
-  void apply(const RenderEdits& edits) { edits.apply(renderer_); }
   /// 0 to 1 for each pixel of the shot. @throws std::runtime_error, RenderCanceled
   std::vector<float> measure(const Shot& shot, const std::function<bool()>& canceled);
 
@@ -28,7 +27,9 @@ class CoverageRenderer {
   std::vector<float> radiance(const protocol::Settings& settings,
                               const std::function<bool()>& canceled);
 
+  const RenderEdits& edits_;
   render::Renderer renderer_;
+  session::ShownParts shown_;
   const std::string clip_;
   protocol::Settings over_white_, over_black_;
 };

@@ -7,8 +7,10 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <utility>
 
 #include "protocol/json/codec.hpp"
+#include "scene/animation/pose.hpp"
 #include "session/edits/texture_edits.hpp"
 #include "session/library/scene_catalogue.hpp"
 #include "session/nodes/node_state.hpp"
@@ -77,27 +79,34 @@ std::vector<scene::TextureOverride> edited_textures(
   return *std::move(textures);
 }
 
-RenderEdits::RenderEdits(const std::shared_ptr<const scene::Scene>& scene,
+RenderEdits::RenderEdits(std::shared_ptr<const scene::Scene> scene,
                          const protocol::EditDocument& document)
-    : edits_(scene) {
-  session::NodeState nodes(scene);
+    : scene_(std::move(scene)) {
+  session::SceneEdits edits(scene_);
+  session::NodeState nodes(scene_);
   const auto cut = section_.set(document.section.value_or(protocol::Section()), "edits.section.");
   for (const auto& fits :
-       {edits_.apply(document), session::apply_visibility(document, nodes), cut}) {
+       {edits.apply(document), session::apply_visibility(document, nodes), cut}) {
     if (!fits) throw std::runtime_error(fits.error().message);
   }
-  if (nodes.hidden_instances()) hidden_ = *nodes.hidden_instances();
+  parts_ = {.lights = edits.device_lights(),
+            .materials = edits.device_materials(),
+            .layers = edits.device_layers(),
+            .hidden = nodes.hidden_instances()};
+  members_ = edits.edited_members();
 }
 
 void RenderEdits::apply(render::Renderer& renderer) const {
-  if (edits_.device_lights()) renderer.set_lights(*edits_.device_lights());
-  if (const auto& layers = edits_.device_layers()) {
-    renderer.set_materials(*edits_.device_materials(), *layers);
-  } else if (edits_.device_materials()) {
-    renderer.set_materials(*edits_.device_materials());
-  }
-  if (!hidden_.empty()) renderer.set_hidden(hidden_);
   if (section_.enabled()) renderer.set_section(*section_.enabled());
+}
+
+void RenderEdits::show(render::Renderer& renderer, session::ShownParts& shown,
+                       const std::string& clip, double seconds) const {
+  shown.show(renderer, {.scene = scene_,
+                        .edited = parts_,
+                        .members = members_,
+                        .clip = scene_ ? scene::find_clip(*scene_, clip) : nullptr,
+                        .seconds = seconds});
 }
 
 }  // namespace heliograph::cli

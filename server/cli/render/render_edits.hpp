@@ -11,6 +11,7 @@
 #include "render/api/renderer.hpp"
 #include "scene/scene.hpp"
 #include "scene/texture_override.hpp"
+#include "session/edits/animated_parts.hpp"
 #include "session/edits/scene_edits.hpp"
 #include "session/edits/section_planes.hpp"
 
@@ -44,15 +45,19 @@ class RenderEdits {
  public:
   RenderEdits() = default;
   /// @throws std::runtime_error where the document does not fit the scene
-  RenderEdits(const std::shared_ptr<const scene::Scene>& scene,
-              const protocol::EditDocument& document);
+  RenderEdits(std::shared_ptr<const scene::Scene> scene, const protocol::EditDocument& document);
 
-  /// After set_scene.
+  /// What no clip changes; after set_scene.
   void apply(render::Renderer& renderer) const;
+  /// Lights, materials and hidden instances at `seconds` of a clip, whose name may be empty, to a
+  /// renderer that has `shown`.
+  void show(render::Renderer& renderer, session::ShownParts& shown, const std::string& clip,
+            double seconds) const;
 
  private:
-  session::SceneEdits edits_;
-  std::vector<bool> hidden_;  // by instance; empty: none
+  std::shared_ptr<const scene::Scene> scene_;
+  session::SceneParts parts_;
+  session::EditedMembers members_;
   session::SectionPlanes section_;
 };
 

@@ -135,11 +135,11 @@ const scene::Clip* choose_clip(const scene::Scene& scene, const protocol::Render
                            protocol::suggestion(request.clip, names_of<scene::Clip>(scene.clips)));
 }
 
-/// The camera at a time of the clip, if the clip moves it.
+/// The camera at a time of the clip, if the clip moves it or changes its lens.
 scene::Camera posed(const scene::Scene& scene, const scene::Camera& camera, const scene::Clip* clip,
                     double seconds) {
   if (!clip || !scene::carries(scene, *clip, camera)) return camera;
-  return scene::camera_at(scene, camera, scene::pose_at(scene, clip, seconds));
+  return scene::camera_at(scene, camera, clip, seconds);
 }
 
 /// The camera carried around the vertical axis through the middle of the scene.

@@ -36,6 +36,7 @@ struct Renderers {
 
   RenderEdits edits;
   render::Renderer images;
+  session::ShownParts shown;                 // by `images`
   std::optional<CoverageRenderer> coverage;  // where the background is put in
 };
 
@@ -55,8 +56,11 @@ void accept(const protocol::Result<void>& result) {
   if (!result) throw std::runtime_error(result.error().message);
 }
 
+/// The one that the request or its edits name, else that of the file of `imported`, else the one
+/// beside it.
 std::shared_ptr<const scene::Environment> environment_of(RenderContext& context,
-                                                         const RenderTask& task) {
+                                                         const RenderTask& task,
+                                                         const scene::Scene& imported) {
   const fs::path scene = task.request.scene;
   fs::path file = task.request.environment;
   const auto& edits = task.request.edits;
@@ -64,6 +68,7 @@ std::shared_ptr<const scene::Environment> environment_of(RenderContext& context,
   if (edited) {
     file = edited_environment(*edits->environment->name, scene);
   } else if (file.empty()) {
+    if (imported.environment) return imported.environment;
     const auto beside = session::environment_beside(scene, scene.parent_path());
     if (beside) file = *beside;
   }
@@ -257,6 +262,7 @@ void render_file(RenderContext& context, Renderers& renderers, const RenderTask&
   for (const Shot& shot : file.shots) {
     // As in a new renderer, with the images and passes of this one.
     if (shot.cut) renderer.invalidate_history();
+    renderers.edits.show(renderer, renderers.shown, task.request.clip, shot.seconds);
     accept(renderer.set_pose(task.request.clip, shot.seconds));
     renderer.set_camera(shot.camera);
     output->add(render_image(context, renderers, task, shot,
@@ -281,7 +287,7 @@ void print_timings(RenderContext& context, const RenderTask& task, render::Rende
 /// The scene on the device, and the scene itself if it had to be read.
 void load(RenderContext& context, const RenderTask& task, std::unique_ptr<scene::Scene> scene,
           std::vector<scene::TextureOverride> textures) {
-  auto environment = environment_of(context, task);
+  auto environment = environment_of(context, task, *scene);
   set_up_device(context);
   context.scene = {.file = task.request.scene,
                    .environment = named_environment(task.request),
@@ -301,13 +307,17 @@ std::unique_ptr<scene::Scene> read_scene(const RenderContext& context, const Ren
 void prepare(RenderContext& context, const RenderTask& task, Renderers& renderers,
              const Shot& first) {
   render::Renderer& renderer = renderers.images;
-  if (task.request.edits) {
-    renderers.edits = RenderEdits(render::scene_of(*context.scene.resources), *task.request.edits);
-  }
+  renderers.edits = RenderEdits(render::scene_of(*context.scene.resources),
+                                task.request.edits.value_or(protocol::EditDocument()));
+  const auto show_scene = [&] {
+    renderer.set_scene(context.scene.resources);
+    renderers.shown.reset();
+    renderers.edits.apply(renderer);
+    renderers.edits.show(renderer, renderers.shown, task.request.clip, first.seconds);
+  };
   const FrameSize size = frame_size(task.request);
   renderer.keep_buffers(reads_buffers(task));
-  renderer.set_scene(context.scene.resources);
-  renderers.edits.apply(renderer);
+  show_scene();
   renderer.set_size(size.width, size.height);
   renderer.set_camera(first.camera);
   accept(renderer.set_settings(task.settings));
@@ -315,8 +325,7 @@ void prepare(RenderContext& context, const RenderTask& task, Renderers& renderer
   if (context.options.timings) {
     print_timings(context, task, renderer);
     // Start again without history, so that the file does not depend on --timings.
-    renderer.set_scene(context.scene.resources);
-    renderers.edits.apply(renderer);
+    show_scene();
     accept(renderer.set_settings(task.settings));
   }
   renderer.set_frame_seconds(static_cast<float>(1.0 / task.request.fps));
@@ -347,8 +356,7 @@ std::shared_ptr<Renderers> take_renderers(RenderContext& context, const RenderTa
   renderers = std::make_shared<Renderers>(*context.engine);
   prepare(context, task, *renderers, first);
   if (!task.background.is_rendered()) {
-    renderers->coverage.emplace(*context.engine, scene.resources, task);
-    renderers->coverage->apply(renderers->edits);
+    renderers->coverage.emplace(*context.engine, scene.resources, task, renderers->edits);
   }
   scene.rendered = std::move(request);
   scene.format = task.format;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/animation/tracks.hpp"
 #include "scene/gltf/nodes/cameras.hpp"
 
 namespace heliograph::scene {
@@ -52,10 +53,10 @@ glm::quat spherical(const glm::quat& from, glm::quat to, float fraction) {
 }
 
 /// A cubic Hermite spline whose tangents are per second (glTF 2.0, C.5).
-void sample_spline(const Channel& channel, const Span& span, float* value) {
-  const std::size_t width = channel.width;
-  const float* first = &channel.values[3 * width * span.first];
-  const float* second = &channel.values[3 * width * span.second];
+void sample_spline(const Curve& curve, const Span& span, float* value) {
+  const std::size_t width = curve.width;
+  const float* first = &curve.values[3 * width * span.first];
+  const float* second = &curve.values[3 * width * span.second];
   const float t = span.fraction, t2 = t * t, t3 = t2 * t;
   for (std::size_t i = 0; i < width; ++i) {
     const float start = first[width + i], out_tangent = span.seconds * first[2 * width + i];
@@ -63,12 +64,6 @@ void sample_spline(const Channel& channel, const Span& span, float* value) {
     value[i] = (2.0f * t3 - 3.0f * t2 + 1.0f) * start + (t3 - 2.0f * t2 + t) * out_tangent +
                (-2.0f * t3 + 3.0f * t2) * end + (t3 - t2) * in_tangent;
   }
-}
-
-float looped(double seconds, float duration) {
-  if (!(seconds > 0.0) || duration <= 0.0f) return 0.0f;
-  if (seconds <= duration) return static_cast<float>(seconds);
-  return static_cast<float>(std::fmod(seconds, static_cast<double>(duration)));
 }
 
 void apply(const Channel& channel, const float* value, Transform& transform) {
@@ -103,15 +98,23 @@ const Clip* find_clip(const Scene& scene, std::string_view name) {
   return found == scene.clips.end() ? nullptr : &*found;
 }
 
+float moment_of(const Clip& clip, double seconds) {
+  if (!(seconds > 0.0) || clip.duration <= 0.0f) return 0.0f;
+  if (seconds <= clip.duration) return static_cast<float>(seconds);
+  return static_cast<float>(std::fmod(seconds, static_cast<double>(clip.duration)));
+}
+
 Pose pose_at(const Scene& scene, const Clip* clip, double seconds) {
   Pose pose = rest_pose(scene);
   if (clip) evaluate(scene, *clip, seconds, pose);
   return pose;
 }
 
-Camera camera_at(const Scene& scene, const Camera& camera, const Pose& pose) {
+Camera camera_at(const Scene& scene, const Camera& camera, const Clip* clip, double seconds) {
   if (!camera.node) return camera;
-  return place_camera(camera, camera.name, pose.worlds[*camera.node], scene.bounds);
+  const Pose pose = pose_at(scene, clip, seconds);
+  return place_camera(clip ? with_lens(camera, *clip, seconds) : camera, camera.name,
+                      pose.worlds[*camera.node], scene.bounds);
 }
 
 std::vector<bool> movable_nodes(const Scene& scene) {
@@ -129,6 +132,7 @@ std::vector<bool> movable_nodes(const Scene& scene) {
 }
 
 bool carries(const Scene& scene, const Clip& clip, const Camera& camera) {
+  if (changes_lens(clip, camera)) return true;
   for (auto node = camera.node; node; node = scene.nodes[*node].parent) {
     for (const Channel& channel : clip.channels) {
       if (channel.node == *node && channel.property != Property::weights) return true;
@@ -137,28 +141,33 @@ bool carries(const Scene& scene, const Clip& clip, const Camera& camera) {
   return false;
 }
 
-void sample(const Channel& channel, float seconds, float* value) {
-  const Span span = span_at(channel.times, seconds);
-  const std::size_t width = channel.width;
-  if (channel.interpolation == Interpolation::cubic_spline) {
-    sample_spline(channel, span, value);
-  } else {
-    const float* first = &channel.values[width * span.first];
-    const float* second = &channel.values[width * span.second];
-    const float fraction = channel.interpolation == Interpolation::step ? 0.0f : span.fraction;
-    if (channel.property == Property::rotation) {
-      store(spherical(to_quaternion(first), to_quaternion(second), fraction), value);
-      return;
-    }
-    for (std::size_t i = 0; i < width; ++i) {
-      value[i] = first[i] + (second[i] - first[i]) * fraction;
-    }
+void sample(const Curve& curve, float seconds, float* value) {
+  const Span span = span_at(curve.times, seconds);
+  if (curve.interpolation == Interpolation::cubic_spline) return sample_spline(curve, span, value);
+  const float* first = &curve.values[curve.width * span.first];
+  const float* second = &curve.values[curve.width * span.second];
+  const float fraction = curve.interpolation == Interpolation::step ? 0.0f : span.fraction;
+  for (std::size_t i = 0; i < curve.width; ++i) {
+    value[i] = first[i] + (second[i] - first[i]) * fraction;
   }
-  if (channel.property == Property::rotation) store(to_quaternion(value), value);
+}
+
+void sample(const Channel& channel, float seconds, float* value) {
+  const Curve& curve = channel;
+  const bool rotation = channel.property == Property::rotation;
+  if (!rotation || channel.interpolation != Interpolation::linear) {
+    sample(curve, seconds, value);
+    if (rotation) store(to_quaternion(value), value);
+    return;
+  }
+  const Span span = span_at(curve.times, seconds);
+  store(spherical(to_quaternion(&curve.values[4 * span.first]),
+                  to_quaternion(&curve.values[4 * span.second]), span.fraction),
+        value);
 }
 
 void evaluate(const Scene& scene, const Clip& clip, double seconds, Pose& pose) {
-  const float moment = looped(seconds, clip.duration);
+  const float moment = moment_of(clip, seconds);
   std::vector<std::optional<Transform>> moved(scene.nodes.size());
   for (std::size_t i = 0; i < scene.nodes.size(); ++i) pose.weights[i] = scene.nodes[i].weights;
   for (const Channel& channel : clip.channels) {

@@ -26,17 +26,23 @@ void evaluate(const Scene& scene, const Clip& clip, double seconds, Pose& pose);
 /// That of `clip` at `seconds`; without a clip the file's.
 Pose pose_at(const Scene& scene, const Clip* clip, double seconds);
 
-/// A camera of the scene in `pose`: clips move cameras with their nodes.
-Camera camera_at(const Scene& scene, const Camera& camera, const Pose& pose);
+/// The moment that `clip` shows at `seconds`, from 0 to its duration: clips loop.
+float moment_of(const Clip& clip, double seconds);
+
+/// A camera of the scene in `clip`, or as in the file, at `seconds`: clips move cameras with their
+/// nodes, and change their lenses.
+Camera camera_at(const Scene& scene, const Camera& camera, const Clip* clip, double seconds);
 
 /// By node: whether some clip may change its world matrix. All others stay as the file has them.
 std::vector<bool> movable_nodes(const Scene& scene);
 
-/// Whether a clip moves a camera of the scene.
+/// Whether a clip moves a camera of the scene or changes its lens.
 bool carries(const Scene& scene, const Clip& clip, const Camera& camera);
 
-/// The value of a channel at `seconds`, `channel.width` numbers (glTF 2.0, appendix C), clamped to
-/// the first and last key. Rotations are normalized.
+/// The value of a curve at `seconds`, `curve.width` numbers (glTF 2.0, appendix C), clamped to the
+/// first and last key.
+void sample(const Curve& curve, float seconds, float* value);
+/// The same of a channel; rotations go along the shorter arc and are normalized.
 void sample(const Channel& channel, float seconds, float* value);
 
 }  // namespace heliograph::scene

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "protocol/limits.hpp"
+#include "scene/animation/tracks.hpp"
 #include "session/edits/edited_parts.hpp"
 #include "session/edits/light_form.hpp"
 #include "session/library/scene_description.hpp"
@@ -232,6 +233,16 @@ void LightEdits::update_device() {
     if (light.removed) lights->back().color = glm::vec3(0.0f);
   }
   device_ = std::move(lights);
+  if (scene::has_tracks(*scene_)) share_list();
+}
+
+void LightEdits::share_list() {
+  std::vector<LightInfo> list;
+  for (std::size_t i = 0; i < scene_->lights.size(); ++i) {
+    list.push_back(lights_[i].now);
+    if (lights_[i].removed) list.back().enabled = false;
+  }
+  shared_list_ = std::make_shared<const std::vector<LightInfo>>(std::move(list));
 }
 
 }  // namespace heliograph::session

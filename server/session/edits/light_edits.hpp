@@ -37,6 +37,11 @@ class LightEdits {
   const std::shared_ptr<const Lights>& device() const { return device_; }
   /// The same for a file: those that are off keep their colour.
   std::vector<scene::LightChange> changes() const;
+  /// The lights of the file as of device(), removed ones as lights that are off, for what animates
+  /// the others of their members; null as long as that is, and where no clip animates them.
+  const std::shared_ptr<const std::vector<protocol::LightInfo>>& shared_list() const {
+    return shared_list_;
+  }
 
  private:
   struct Light {
@@ -51,10 +56,12 @@ class LightEdits {
   protocol::Result<protocol::LightInfo> bring_back(Light& light, const protocol::LightAdd& request);
   Light make_light(protocol::LightType type) const;
   void update_device();
+  void share_list();
 
   std::shared_ptr<const scene::Scene> scene_;
   std::vector<Light> lights_;
   std::shared_ptr<const Lights> device_;
+  std::shared_ptr<const std::vector<protocol::LightInfo>> shared_list_;
 };
 
 }  // namespace heliograph::session

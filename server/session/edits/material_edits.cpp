@@ -4,6 +4,7 @@
 #include <string_view>
 #include <utility>
 
+#include "scene/animation/tracks.hpp"
 #include "scene/gltf/materials/layer_table.hpp"
 #include "scene/texture_override.hpp"
 #include "session/edits/edited_parts.hpp"
@@ -50,6 +51,9 @@ Result<MaterialInfo> MaterialEdits::patch(const protocol::MaterialsPatch& reques
     device.layer = own_layer(index, layer_form(material, file));
   }
   device_ = std::move(materials);
+  if (scene::has_tracks(*scene_)) {
+    shared_list_ = std::make_shared<const std::vector<MaterialInfo>>(materials_);
+  }
   return patched;
 }
 

@@ -37,6 +37,11 @@ class MaterialEdits {
   /// What Material::layer of device() counts: the layers of the scene, then those of materials
   /// whose extensions were edited. Null: the scene's. A new list comes with a new device() only.
   const std::shared_ptr<const Layers>& device_layers() const { return device_layers_; }
+  /// list() as of device(), for what animates the others of their members; null as long as that is,
+  /// and where no clip animates materials.
+  const std::shared_ptr<const std::vector<protocol::MaterialInfo>>& shared_list() const {
+    return shared_list_;
+  }
 
  private:
   std::uint32_t own_layer(std::size_t material, const shared::MaterialLayer& layer);
@@ -46,6 +51,7 @@ class MaterialEdits {
   std::shared_ptr<const Materials> device_;
   std::map<std::size_t, std::uint32_t> own_layers_;  // by material
   std::shared_ptr<const Layers> device_layers_;
+  std::shared_ptr<const std::vector<protocol::MaterialInfo>> shared_list_;
 };
 
 /// The materials of the file. Names are unique: a material without one gets its number.

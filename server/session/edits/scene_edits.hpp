@@ -8,6 +8,22 @@
 
 namespace heliograph::session {
 
+/// Lights, materials and hidden instances of a scene, as a renderer takes them.
+struct SceneParts {
+  std::shared_ptr<const LightEdits::Lights> lights = nullptr;           // null: the scene's own
+  std::shared_ptr<const MaterialEdits::Materials> materials = nullptr;  // null: the scene's own
+  std::shared_ptr<const MaterialEdits::Layers> layers =
+      nullptr;                                                // of `materials`; null: the scene's
+  std::shared_ptr<const std::vector<bool>> hidden = nullptr;  // by instance; null: none
+  bool operator==(const SceneParts&) const = default;
+};
+
+/// Which members of lights and materials were edited, where clips animate others; null: none.
+struct EditedMembers {
+  std::shared_ptr<const std::vector<protocol::LightInfo>> lights = nullptr;
+  std::shared_ptr<const std::vector<protocol::MaterialInfo>> materials = nullptr;
+};
+
 /// The lights and materials of a scene with the changes of one session. Only these small tables are
 /// copied; geometry and textures stay shared.
 class SceneEdits {
@@ -51,6 +67,8 @@ class SceneEdits {
   const std::shared_ptr<const Lights>& device_lights() const { return lights_.device(); }
   const std::shared_ptr<const Materials>& device_materials() const { return materials_.device(); }
   const std::shared_ptr<const Layers>& device_layers() const { return materials_.device_layers(); }
+  /// See LightEdits::shared_list and MaterialEdits::shared_list.
+  EditedMembers edited_members() const { return {lights_.shared_list(), materials_.shared_list()}; }
 
  private:
   LightEdits lights_;

@@ -15,8 +15,7 @@ const scene::Clip* clip_of(const RenderState& state) {
 
 scene::Camera camera_of(const RenderState& state, double seconds) {
   if (!state.camera_follows) return state.camera;
-  return scene::camera_at(*state.scene, state.camera,
-                          scene::pose_at(*state.scene, clip_of(state), seconds));
+  return scene::camera_at(*state.scene, state.camera, clip_of(state), seconds);
 }
 
 }  // namespace

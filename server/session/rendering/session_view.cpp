@@ -72,6 +72,7 @@ void SessionView::make_renderer() {
   renderer_->keep_buffers(false);
   needed_at_ = Clock::now();
   state_ = {};
+  shown_parts_.reset();
   apply(session_->render_state().settings);
 }
 
@@ -95,6 +96,7 @@ void SessionView::release_renderer() {
   newest_stepped_ = false;
   broadcast_.reset();
   state_ = {};
+  shown_parts_.reset();
   session_->viewers().discard_latest();
   log_info({.session = session_->name()}, "images released");
 }
@@ -126,8 +128,14 @@ SessionView::Work SessionView::advance(bool may_draw) {
   if (next_view_state(view_inputs()) == ViewState::final) broadcast_.send_final();
   if (broadcast_.pump()) return Work::small;
   if (!frame_due()) return Work::none;
-  if (begin_preparing()) return Work::small;
+  // What a clip shows or hides has to be prepared. A frame comes of that before another moment.
+  if (state_.animation.playing && !moment_prepared_) adopt_moment();
+  if (begin_preparing()) {
+    moment_prepared_ = true;
+    return Work::small;
+  }
   if (!may_draw) return Work::held_back;
+  moment_prepared_ = false;
   begin_next_frame();
   return Work::drawing;
 }

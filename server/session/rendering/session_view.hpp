@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "render/api/renderer.hpp"
+#include "session/edits/animated_parts.hpp"
 #include "session/rendering/frame_readers.hpp"
 #include "session/rendering/view_state.hpp"
 #include "session/session.hpp"
@@ -95,7 +96,7 @@ class SessionView {
   void adopt_state();
   void adopt(RenderState next);
   void adopt_edits(const RenderState& before);
-  void adopt_pose();
+  void adopt_moment();
   void adopt_draw_scale();
   void keep_buffers();
   void set_draw_scale(float scale);
@@ -145,6 +146,8 @@ class SessionView {
   bool first_frame_due_ = false;  // rendered without viewers
 
   RenderState state_;
+  ShownParts shown_parts_;        // by the renderer
+  bool moment_prepared_ = false;  // for the next frame, since the last one
   Clock::time_point camera_moved_at_;
   float draw_scale_ = 1.0f;            // of the renderer
   Clock::time_point moving_frame_at_;  // the end of the newest moving frame

@@ -24,10 +24,8 @@ std::uint32_t microseconds_of(Clock::duration duration) {
 
 bool differs_by_camera_alone(const RenderState& before, const RenderState& after) {
   return after.resources == before.resources && after.scene == before.scene &&
-         after.lights == before.lights && after.materials == before.materials &&
-         after.layers == before.layers && after.hidden == before.hidden &&
-         after.selected == before.selected && after.section == before.section &&
-         after.environment == before.environment &&
+         after.parts == before.parts && after.selected == before.selected &&
+         after.section == before.section && after.environment == before.environment &&
          after.discontinuities == before.discontinuities &&
          after.camera_follows == before.camera_follows && !before.animation.playing &&
          after.animation == before.animation && after.settings == before.settings &&
@@ -72,7 +70,6 @@ void SessionView::begin_following_frame(Clock::time_point device_free) {
 void SessionView::begin_frame(double seconds) {
   const Clock::time_point start = Clock::now();
   session_->mark_used();
-  if (state_.animation.playing) adopt_pose();
   renderer_->set_frame_seconds(static_cast<float>(seconds));
   const Clock::time_point before = std::exchange(frame_began_at_, start);
   // A viewer that moves the camera does not wait for a frame of the view that it leaves.

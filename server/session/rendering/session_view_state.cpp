@@ -18,12 +18,6 @@ namespace {
 /// change takes as long as a frame.
 constexpr std::chrono::seconds keep_buffers_after{10};
 
-SceneEdits::Lights file_lights(const scene::Scene& scene) {
-  SceneEdits::Lights lights;
-  for (const scene::Light& light : scene.lights) lights.push_back(light.device);
-  return lights;
-}
-
 }  // namespace
 
 void SessionView::adopt_state() {
@@ -38,7 +32,10 @@ void SessionView::adopt(RenderState next) {
     session_->migrate(migration);
     state_ = session_->render_state();
   }
-  if (state_.resources != before.resources) renderer_->set_scene(state_.resources);
+  if (state_.resources != before.resources) {
+    renderer_->set_scene(state_.resources);
+    shown_parts_.reset();
+  }
   adopt_edits(before);
   if (state_.reset_count != before.reset_count) {
     renderer_->reset();
@@ -53,25 +50,14 @@ void SessionView::adopt(RenderState next) {
   if (same_scene && !scene::same_view(state_.camera, before.camera)) {
     camera_moved_at_ = Clock::now();
   }
-  adopt_pose();
+  adopt_moment();
   apply(state_.settings);
 }
 
-/// What the session changed in the scene; a scene that is new to the renderer has no changes yet.
+/// What the session changed in the scene, but for the parts that clips change, too; a scene that is
+/// new to the renderer has no changes yet.
 void SessionView::adopt_edits(const RenderState& before) {
   const bool same_scene = state_.resources == before.resources;
-  if (state_.lights != (same_scene ? before.lights : nullptr)) {
-    renderer_->set_lights(state_.lights ? *state_.lights : file_lights(*state_.scene));
-  }
-  if (state_.materials != (same_scene ? before.materials : nullptr)) {
-    renderer_->set_materials(
-        state_.materials ? *state_.materials : state_.scene->materials,
-        state_.layers ? std::span(*state_.layers) : std::span<const shared::MaterialLayer>());
-  }
-  if (state_.hidden != (same_scene ? before.hidden : nullptr)) {
-    renderer_->set_hidden(state_.hidden ? *state_.hidden : std::vector<bool>());
-    discontinuous_ = true;
-  }
   if (state_.section != (same_scene ? before.section : nullptr)) {
     renderer_->set_section(state_.section ? *state_.section : render::Section());
     discontinuous_ = true;
@@ -86,20 +72,23 @@ void SessionView::adopt_edits(const RenderState& before) {
   }
 }
 
-/// The pose of the clip at this time, and the camera where the clip moves it.
-void SessionView::adopt_pose() {
+/// What the clip shows at this time: edited and animated parts, the pose, and the camera where the
+/// clip moves it.
+void SessionView::adopt_moment() {
   const double seconds = state_.animation.at(state_.now());
+  const scene::Clip* const clip =
+      state_.scene ? scene::find_clip(*state_.scene, state_.animation.clip) : nullptr;
+  discontinuous_ |= shown_parts_.show(*renderer_, {.scene = state_.scene,
+                                                   .edited = state_.parts,
+                                                   .members = state_.edited_members,
+                                                   .clip = clip,
+                                                   .seconds = seconds});
   if (const auto posed = renderer_->set_pose(state_.animation.clip, seconds); !posed) {
     log_error({.session = session_->name()}, posed.error().message);
   }
-  const scene::Clip* const clip =
-      state_.camera_follows ? scene::find_clip(*state_.scene, state_.animation.clip) : nullptr;
-  if (!clip) {
-    renderer_->set_camera(state_.camera);
-    return;
-  }
-  const scene::Pose pose = scene::pose_at(*state_.scene, clip, seconds);
-  renderer_->set_camera(scene::camera_at(*state_.scene, state_.camera, pose));
+  renderer_->set_camera(state_.camera_follows && clip
+                            ? scene::camera_at(*state_.scene, state_.camera, clip, seconds)
+                            : state_.camera);
 }
 
 bool SessionView::next_frame_moves() const {

@@ -28,10 +28,8 @@ struct RenderState {
   Clock::time_point changed_at;
   std::shared_ptr<const render::SceneResources> resources;
   std::shared_ptr<const scene::Scene> scene;
-  std::shared_ptr<const SceneEdits::Lights> lights;            // null: the scene's own
-  std::shared_ptr<const SceneEdits::Materials> materials;      // null: the scene's own
-  std::shared_ptr<const SceneEdits::Layers> layers;            // of `materials`; null: the scene's
-  std::shared_ptr<const std::vector<bool>> hidden;             // by instance; null: none
+  SceneParts parts;                                            // as edited
+  EditedMembers edited_members;                                // of `parts`
   std::shared_ptr<const std::vector<std::uint32_t>> selected;  // instances; null: none
   std::shared_ptr<const render::Section> section;              // null: the scene is whole
   std::shared_ptr<const render::LitEnvironment> environment;   // null: the scene's own

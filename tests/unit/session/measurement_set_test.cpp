@@ -34,10 +34,9 @@ std::shared_ptr<const scene::Scene> turned_square() {
   scene->instances = {{0, 1}, {1, 1}};
   scene->clips.push_back({.name = "slide",
                           .duration = 1.0f,
-                          .channels = {{.node = 1,
-                                        .property = scene::Property::translation,
-                                        .times = {0.0f, 1.0f},
-                                        .values = {0, 0, 0, 3, 0, 0}}}});
+                          .channels = {{{.times = {0.0f, 1.0f}, .values = {0, 0, 0, 3, 0, 0}},
+                                        1,
+                                        scene::Property::translation}}});
   return scene;
 }
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <memory>
+
 #include "scene/studio.hpp"
 #include "session/library/environment_source.hpp"
 #include "temporary_folder.hpp"
@@ -118,6 +120,19 @@ TEST(EnvironmentSource, IsTheStudioWithoutAFile) {
   EXPECT_EQ(source.path_for({.name = "chair", .path = scene, .root = folder.path()}), std::nullopt);
   const auto environment = source.environment_at({});
   EXPECT_EQ(environment->radiance, scene::studio_environment().radiance);
+}
+
+TEST(EnvironmentSource, TheLightInAScenesFileGivesWayToAForcedOneOnly) {
+  scene::Scene lit;
+  lit.environment =
+      std::make_shared<const scene::Environment>(scene::constant_environment(glm::vec3(2.0f)));
+  EnvironmentSource source(std::nullopt);
+  EXPECT_TRUE(source.is_lit_by_its_file(lit));
+  EXPECT_EQ(source.environment_of(lit, "beside.hdr"), lit.environment);
+  EXPECT_TRUE(source.environment_of(scene::Scene(), {})->is_studio);
+  EnvironmentSource forced("forced.hdr");
+  EXPECT_FALSE(forced.is_lit_by_its_file(lit));
+  EXPECT_TRUE(forced.environment_of(lit, {})->is_studio);
 }
 
 }  // namespace

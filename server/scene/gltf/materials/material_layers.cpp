@@ -13,6 +13,7 @@ class LayerReader {
 
   MaterialLayers read() {
     MaterialLayers layers;
+    read_emissive_strength(layers);
     read_specular(layers);
     read_clearcoat(layers);
     read_sheen(layers);
@@ -26,6 +27,11 @@ class LayerReader {
   }
 
  private:
+  void read_emissive_strength(MaterialLayers& layers) {
+    const auto json = find("KHR_materials_emissive_strength");
+    if (json) layers.emissive_strength = json->number("emissiveStrength", 1.0f);
+  }
+
   void read_specular(MaterialLayers& layers) {
     const auto json = find("KHR_materials_specular");
     if (!json) return;

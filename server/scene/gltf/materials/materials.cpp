@@ -144,6 +144,8 @@ MaterialTable read_materials(const tinygltf::Model& model, TextureTable& texture
     const std::string path = item_path("", "materials", table.materials.size());
     table.materials.push_back(reader.read(document, path));
     table.layers.push_back(read_material_layers(document.extensions, path, textures, warnings));
+    const auto& factor = document.emissiveFactor;
+    table.layers.back().emissive_factor = glm::vec3(factor[0], factor[1], factor[2]);
     table.names.push_back(document.name);
   }
   return table;

@@ -1,28 +1,13 @@
 #include "scene/gltf/materials/texture_slot.hpp"
 
-#include <cmath>
-
 namespace heliograph::scene {
 namespace {
-
-// KHR_texture_transform: translation * rotation * scale; the rotation is counter-clockwise with v
-// pointing down. The sample matrix in the extension's text rotates the other way; its test model
-// and the implementations agree on this one (github.com/KhronosGroup/glTF/issues/1563).
-void apply_transform(const ExtensionValue& transform, shared::TextureSlot& slot) {
-  const auto offset = transform.numbers<2>("offset", {0.0f, 0.0f});
-  const auto scale = transform.numbers<2>("scale", {1.0f, 1.0f});
-  const float rotation = transform.number("rotation", 0.0f);
-  const float cosine = std::cos(rotation);
-  const float sine = std::sin(rotation);
-  slot.transform_row0 = {cosine * scale[0], sine * scale[1], offset[0], 0.0f};
-  slot.transform_row1 = {-sine * scale[0], cosine * scale[1], offset[1], 0.0f};
-}
 
 shared::TextureSlot uv_slot(std::uint64_t uv_set, const std::optional<ExtensionValue>& transform,
                             const std::string& path, Warnings& warnings) {
   shared::TextureSlot slot = no_texture_slot();
   if (transform) {
-    apply_transform(*transform, slot);
+    read_texture_transform(*transform).apply(slot);
     uv_set = transform->integer("texCoord").value_or(uv_set);
   }
   if (uv_set > 1) {
@@ -39,6 +24,14 @@ std::optional<ExtensionValue> transform_of(const ExtensionValue& info) {
 }
 
 }  // namespace
+
+TextureTransform read_texture_transform(const ExtensionValue& value) {
+  const auto offset = value.numbers<2>("offset", {0.0f, 0.0f});
+  const auto scale = value.numbers<2>("scale", {1.0f, 1.0f});
+  return {.offset = {offset[0], offset[1]},
+          .rotation = value.number("rotation", 0.0f),
+          .scale = {scale[0], scale[1]}};
+}
 
 shared::TextureSlot read_texture_slot(int texture, int uv_set,
                                       const std::optional<ExtensionValue>& transform,

@@ -6,6 +6,9 @@
 
 namespace heliograph::scene {
 
+/// An object of KHR_texture_transform.
+TextureTransform read_texture_transform(const ExtensionValue& value);
+
 /// The parts of a textureInfo: see below.
 shared::TextureSlot read_texture_slot(int texture, int uv_set,
                                       const std::optional<ExtensionValue>& transform,

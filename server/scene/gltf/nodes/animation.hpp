@@ -9,11 +9,17 @@
 
 namespace heliograph::scene {
 
-/// The document's animations of nodes in the scene. Names are made unique; unnamed clips are called
-/// "clip N".
+struct Animations {
+  std::vector<Clip> clips;
+  std::vector<AnimatedSlot> slots;
+};
+
+/// The document's animations of the scene. Names are made unique; unnamed clips are called
+/// "clip N". Pointers to what cannot be animated are left out with a warning, or refused where the
+/// document requires KHR_animation_pointer.
 /// @throws ImportError
-std::vector<Clip> read_clips(const tinygltf::Model& model, std::span<const Accessor> accessors,
-                             const NodeTable& nodes, ByteBudget& budget, Warnings& warnings);
+Animations read_animations(const tinygltf::Model& model, std::span<const Accessor> accessors,
+                           const NodeTable& nodes, ByteBudget& budget, Warnings& warnings);
 
 /// The document's skins, in order; a skin with joints outside the scene has no joints.
 /// @throws ImportError

@@ -55,6 +55,7 @@ std::vector<Camera> read_cameras(const tinygltf::Model& model) {
     const std::string path = item_path("", "cameras", cameras.size()) + "." + document.type;
     Camera& camera = cameras.emplace_back();
     camera.name = document.name;
+    camera.number = static_cast<std::uint32_t>(cameras.size() - 1);
     if (document.type == "perspective") {
       read_perspective(document.perspective, path, camera);
     } else {

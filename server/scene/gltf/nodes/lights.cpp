@@ -41,7 +41,7 @@ glm::vec3 scaled(const glm::vec3& color, double factor, const std::string& path,
   return result;
 }
 
-Light read_light(const tinygltf::Light& document, const std::string& path) {
+Light read_light(const tinygltf::Light& document, std::uint32_t number, const std::string& path) {
   Light light;
   light.name = document.name;
   light.device = unplaced(to_type(document.type));
@@ -50,6 +50,8 @@ Light read_light(const tinygltf::Light& document, const std::string& path) {
     color[int(i)] = static_cast<float>(document.color[i]);
   }
   light.device.color = scaled(color, document.intensity, path, "intensity");
+  light.punctual = PunctualLight{
+      .number = number, .color = color, .intensity = static_cast<float>(document.intensity)};
   light.device.range = static_cast<float>(document.range);  // 0: infinite
   if (light.device.type == shared::light_spot) read_cone(document.spot, path, light.device);
   return light;
@@ -92,7 +94,8 @@ std::vector<Light> read_lights(const tinygltf::Model& model) {
   std::vector<Light> lights;
   const std::string path = "extensions.KHR_lights_punctual";
   for (const tinygltf::Light& document : model.lights) {
-    lights.push_back(read_light(document, item_path(path, "lights", lights.size())));
+    const auto number = static_cast<std::uint32_t>(lights.size());
+    lights.push_back(read_light(document, number, item_path(path, "lights", number)));
   }
   return lights;
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "scene/gltf/document/extension_value.hpp"
+#include "scene/gltf/nodes/animation_pointer.hpp"
 #include "scene/gltf/nodes/instancing.hpp"
 #include "scene/import_error.hpp"
 
@@ -19,6 +20,7 @@ struct DocumentNode {
   NodeAttachments attachments;
   std::vector<std::uint32_t> children;
   bool visible = true;
+  bool may_appear = true;  // it is visible, or an animation may show it
   bool has_parent = false;
 };
 
@@ -249,10 +251,13 @@ NodeTable read_nodes(const tinygltf::Model& model, std::span<const Accessor> acc
   Context context{accessors, read_mesh_weights(model), limits.instances};
   std::vector<DocumentNode> nodes;
   nodes.reserve(model.nodes.size());
+  const std::vector<bool> blink = nodes_that_blink(model);
   std::uint64_t weights = 0;
   for (const tinygltf::Node& document : model.nodes) {
     throw_if_cancelled(stop, nodes.size());
+    const bool blinks = blink[nodes.size()];
     nodes.push_back(read_node(document, item_path("", "nodes", nodes.size()), context));
+    nodes.back().may_appear = nodes.back().visible || blinks;
     context.instances -= nodes.back().attachments.instance_transforms.size();
     weights += nodes.back().node.weights.size();
     if (weights > limits.json_values) refuse_at(nodes.back().path, "has too many morph weights");
@@ -262,17 +267,18 @@ NodeTable read_nodes(const tinygltf::Model& model, std::span<const Accessor> acc
 
   NodeTable table;
   table.of_document.resize(nodes.size());
-  std::vector<bool> visible;  // of the table's nodes
+  std::vector<bool> appears;  // the table's nodes, ever
   visit_hierarchy(nodes, read_roots(model, nodes, shown, limits.node_depth, warnings),
                   limits.node_depth, [&](std::uint32_t index, std::optional<std::uint32_t> parent) {
                     Node node = nodes[index].node;
                     node.parent = parent;
+                    node.visible = nodes[index].visible || !nodes[index].may_appear;
                     node.world = parent ? table.nodes[*parent].world * node.local : node.local;
                     table.of_document[index] = static_cast<std::uint32_t>(table.nodes.size());
                     table.nodes.push_back(std::move(node));
-                    visible.push_back(nodes[index].visible && (!parent || visible[*parent]));
+                    appears.push_back(nodes[index].may_appear && (!parent || appears[*parent]));
                     NodeAttachments attachments = nodes[index].attachments;
-                    if (!visible.back()) attachments = {.camera = attachments.camera};
+                    if (!appears.back()) attachments = {.camera = attachments.camera};
                     table.attachments.push_back(std::move(attachments));
                     table.paths.push_back(nodes[index].path);
                   });

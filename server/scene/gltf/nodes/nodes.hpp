@@ -37,7 +37,7 @@ struct NodeTable {
 /// Reads all nodes, rejects cycles, second parents and excessive depth, and keeps those of scene
 /// `shown`, or all where there is none. A node that a scene lists although its parent is shown
 /// stays where its parent puts it. A node with mesh instances gets one child per instance. Nodes
-/// that are not visible, and those below them, keep their cameras only.
+/// that are never visible, and those below them, keep their cameras only.
 /// @throws ImportError, LoadCancelled
 NodeTable read_nodes(const tinygltf::Model& model, std::span<const Accessor> accessors,
                      std::optional<std::uint32_t> shown, const ImportLimits& limits,

@@ -164,12 +164,26 @@ inline constexpr std::string_view path_words[] = {"translation", "rotation", "sc
                                                   "pointer"};
 inline constexpr Choices paths = {.words = path_words,
                                   .reason = "is not a property that can be animated"};
+inline constexpr Member pointer_members[] = {text("pointer").needed()};
+inline constexpr ObjectType pointer = {pointer_members};
+inline constexpr Extension target_extensions[] = {{"KHR_animation_pointer", &pointer}};
+/// A pointer names its object itself.
+inline void check_target(const nlohmann::json& target_json, const Place& place,
+                         const nlohmann::json&) {
+  if (target_json.at("path") != "pointer") return;
+  if (target_json.contains("node")) refuse_at(place.text(), "node", "must not be beside a pointer");
+  const auto extensions = target_json.find("extensions");
+  if (extensions == target_json.end() || !extensions->contains("KHR_animation_pointer")) {
+    refuse_at(place.text(), "extensions.KHR_animation_pointer", "is missing");
+  }
+}
 // tinygltf drops channels without a node.
 inline constexpr Member target_members[] = {
     index("node", Table::nodes).otherwise("-1"),
     text("path").one_of(paths).needed(),
 };
-inline constexpr ObjectType target = {target_members};
+inline constexpr ObjectType target = {
+    .members = target_members, .extensions = target_extensions, .rule = check_target};
 inline constexpr Member channel_members[] = {
     index("sampler", Table::animation_samplers).needed(),
     object("target", target).needed(),

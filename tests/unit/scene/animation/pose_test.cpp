@@ -11,7 +11,7 @@ namespace {
 
 Channel curve(Property property, Interpolation interpolation, std::uint32_t width,
               std::vector<float> times, std::vector<float> values) {
-  return {0, property, interpolation, width, std::move(times), std::move(values)};
+  return {{interpolation, width, std::move(times), std::move(values)}, 0, property};
 }
 
 std::array<float, 4> at(const Channel& channel, float seconds) {

@@ -106,30 +106,6 @@ TEST(Lenient, MaterialsAreShownWithoutImagesThatAreMissingOrDamaged) {
   EXPECT_TRUE(warns(missing.import(), "\"missing.png\" is missing"));
 }
 
-TEST(Lenient, AnimationsOfPointersAreLeftOutEvenWhereRequired) {
-  GltfBuilder builder = everything();
-  builder.json["extensionsUsed"].push_back("KHR_animation_pointer");
-  builder.json["extensionsRequired"] = {"KHR_animation_pointer"};
-  json& channels = builder.json["animations"][0]["channels"];
-  channels.push_back(channels[0]);
-  channels[0]["target"] = {
-      {"path", "pointer"},
-      {"extensions", {{"KHR_animation_pointer", {{"pointer", "/nodes/0/scale"}}}}}};
-  const Scene scene = builder.import();
-  EXPECT_EQ(scene.clips.at(0).channels.size(), 1u);
-  EXPECT_TRUE(warns(scene, "\"KHR_animation_pointer\" is ignored"));
-  EXPECT_TRUE(warns(scene, "animations of other properties"));
-}
-
-TEST(Lenient, LightFromAroundAFileIsLeftOutEvenWhereRequired) {
-  GltfBuilder builder = everything();
-  builder.json["extensionsUsed"].push_back("EXT_lights_image_based");
-  builder.json["extensionsRequired"] = {"EXT_lights_image_based"};
-  builder.json["extensions"]["EXT_lights_image_based"]["lights"] = {{{"intensity", 2}}};
-  builder.json["scenes"][0]["extensions"]["EXT_lights_image_based"]["light"] = 0;
-  EXPECT_TRUE(warns(builder.import(), "\"EXT_lights_image_based\" is ignored"));
-}
-
 TEST(Lenient, OtherMaterialExtensionsAreLeftOutUnlessRequired) {
   const std::string extension = "KHR_materials_subsurface";
   GltfBuilder builder = everything();

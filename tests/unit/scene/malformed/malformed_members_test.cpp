@@ -13,6 +13,7 @@ using nlohmann::json;
 const char* const indices[] = {
     "/scene",
     "/scenes/0/nodes/0",
+    "/scenes/0/extensions/EXT_lights_image_based/light",
     "/nodes/0/children/0",
     "/nodes/0/mesh",
     "/nodes/1/camera",
@@ -64,6 +65,7 @@ const char* const counts[] = {
     "/bufferViews/0/byteLength",
     "/bufferViews/0/byteOffset",
     "/bufferViews/0/byteStride",
+    "/extensions/EXT_lights_image_based/lights/0/specularImageSize",
 };
 
 // Required members.
@@ -114,6 +116,10 @@ const char* const required[] = {
     "/nodes/6/extensions/EXT_mesh_gpu_instancing/attributes",
     "/skins/0/joints",
     "/extensions/KHR_lights_punctual/lights/0/type",
+    "/extensions/EXT_lights_image_based/lights/0/irradianceCoefficients",
+    "/extensions/EXT_lights_image_based/lights/0/specularImages",
+    "/extensions/EXT_lights_image_based/lights/0/specularImageSize",
+    "/scenes/0/extensions/EXT_lights_image_based/light",
 };
 
 const char* const vectors[] = {
@@ -129,6 +135,7 @@ const char* const vectors[] = {
     "/materials/0/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform/scale",
     "/materials/0/extensions/KHR_materials_sheen/sheenColorFactor",
     "/extensions/KHR_lights_punctual/lights/0/color",
+    "/extensions/EXT_lights_image_based/lights/0/rotation",
 };
 
 const char* const numbers[] = {
@@ -147,6 +154,7 @@ const char* const numbers[] = {
     "/cameras/1/orthographic/xmag",
     "/cameras/1/orthographic/ymag",
     "/extensions/KHR_lights_punctual/lights/0/intensity",
+    "/extensions/EXT_lights_image_based/lights/0/intensity",
     "/extensions/KHR_lights_punctual/lights/1/range",
     "/extensions/KHR_lights_punctual/lights/1/spot/innerConeAngle",
     "/extensions/KHR_lights_punctual/lights/1/spot/outerConeAngle",
@@ -175,6 +183,9 @@ const char* const arrays[] = {
     "/animations/0/channels",
     "/extensions/KHR_lights_punctual/lights",
     "/extensions/KHR_materials_variants/variants",
+    "/extensions/EXT_lights_image_based/lights",
+    "/extensions/EXT_lights_image_based/lights/0/irradianceCoefficients",
+    "/extensions/EXT_lights_image_based/lights/0/specularImages",
 };
 
 const char* const texts[] = {

@@ -187,7 +187,14 @@ void add_nodes(GltfBuilder& b) {
                    {{"EXT_mesh_gpu_instancing", {{"attributes", {{"TRANSLATION", places}}}}}}}});
   b.add("nodes",
         {{"mesh", 3}, {"camera", 1}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 3, 4, 5, 1}}});
-  b.add("scenes", {{"nodes", {0, 4, 5, 6, 7}}});
+  b.json["extensions"]["EXT_lights_image_based"]["lights"] = {
+      {{"rotation", {0, 0, 0, 1}},
+       {"intensity", 2},
+       {"irradianceCoefficients", json(9, json(3, 0.5))},
+       {"specularImages", json::array({json(6, json(0))})},
+       {"specularImageSize", 4}}};
+  b.add("scenes",
+        {{"nodes", {0, 4, 5, 6, 7}}, {"extensions", {{"EXT_lights_image_based", {{"light", 0}}}}}});
   b.json["scene"] = 0;
 }
 
@@ -215,25 +222,16 @@ void add_animation(GltfBuilder& b) {
 GltfBuilder rich_document() {
   GltfBuilder b;
   b.json["asset"]["minVersion"] = "2.0";
-  b.json["extensionsUsed"] = {"KHR_lights_punctual",
-                              "KHR_texture_transform",
-                              "EXT_texture_webp",
-                              "KHR_draco_mesh_compression",
-                              "EXT_meshopt_compression",
-                              "EXT_mesh_gpu_instancing",
-                              "KHR_materials_variants",
-                              "KHR_materials_ior",
-                              "KHR_materials_specular",
-                              "KHR_materials_clearcoat",
-                              "KHR_materials_sheen",
-                              "KHR_materials_transmission",
-                              "KHR_materials_volume",
-                              "KHR_materials_unlit",
-                              "KHR_materials_emissive_strength",
-                              "KHR_materials_iridescence",
-                              "KHR_materials_anisotropy",
-                              "KHR_materials_dispersion",
-                              "KHR_materials_diffuse_transmission"};
+  b.json["extensionsUsed"] = {"EXT_lights_image_based",     "KHR_lights_punctual",
+                              "KHR_texture_transform",      "EXT_texture_webp",
+                              "KHR_draco_mesh_compression", "EXT_meshopt_compression",
+                              "EXT_mesh_gpu_instancing",    "KHR_materials_variants",
+                              "KHR_materials_ior",          "KHR_materials_specular",
+                              "KHR_materials_clearcoat",    "KHR_materials_sheen",
+                              "KHR_materials_transmission", "KHR_materials_volume",
+                              "KHR_materials_unlit",        "KHR_materials_emissive_strength",
+                              "KHR_materials_iridescence",  "KHR_materials_anisotropy",
+                              "KHR_materials_dispersion",   "KHR_materials_diffuse_transmission"};
   b.json["extensionsRequired"] = {"KHR_draco_mesh_compression", "EXT_meshopt_compression"};
   add_textures(b);
   add_materials(b);
