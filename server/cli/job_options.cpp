@@ -61,14 +61,15 @@ class NamedFiles {
   std::vector<std::string> names_;
 };
 
-jobs::QueueOptions::Catalogue read_catalogue(const session::SceneCatalogue& catalogue) {
+jobs::QueueOptions::Catalogue read_catalogue(const session::SceneCatalogue& scenes,
+                                             const session::SceneCatalogue& environments) {
   const auto lookup = [](const std::vector<session::CatalogueEntry>& entries) {
     return [files = std::make_shared<const NamedFiles>(entries)](const std::string& name) {
       return files->find(name);
     };
   };
-  return {.scene = lookup(catalogue.list()),
-          .environment = lookup(catalogue.list_files({".hdr", ".exr"}))};
+  return {.scene = lookup(scenes.list()),
+          .environment = lookup(environments.list_files({".hdr", ".exr"}))};
 }
 
 bool deliver(const jobs::QueueOptions::Delivery& delivery) {
@@ -86,16 +87,21 @@ bool deliver(const jobs::QueueOptions::Delivery& delivery) {
 std::unique_ptr<jobs::JobQueue> make_job_queue(const ServeOptions& options,
                                                const session::HostOptions& hosting) {
   if (options.jobs.empty()) return nullptr;
-  const auto catalogue = std::make_shared<session::SceneCatalogue>(hosting.scene_roots);
-  jobs::QueueOptions queue{.folder = fs::absolute(options.jobs),
-                           .quota = options.job_quota,
-                           .max_waiting = options.max_waiting_jobs,
-                           .keep_seconds = static_cast<double>(options.keep_jobs),
-                           .render_arguments = render_arguments(options, hosting.image_roots),
-                           .webhook_hosts = options.webhook_hosts,
-                           .webhook_secret = options.webhook_secret,
-                           .catalogue = [catalogue] { return read_catalogue(*catalogue); },
-                           .deliver = deliver};
+  std::vector<fs::path> environment_roots = hosting.scene_roots;
+  environment_roots.insert(environment_roots.end(), hosting.environment_roots.begin(),
+                           hosting.environment_roots.end());
+  const auto scenes = std::make_shared<session::SceneCatalogue>(hosting.scene_roots);
+  const auto environments = std::make_shared<session::SceneCatalogue>(std::move(environment_roots));
+  jobs::QueueOptions queue{
+      .folder = fs::absolute(options.jobs),
+      .quota = options.job_quota,
+      .max_waiting = options.max_waiting_jobs,
+      .keep_seconds = static_cast<double>(options.keep_jobs),
+      .render_arguments = render_arguments(options, hosting.image_roots),
+      .webhook_hosts = options.webhook_hosts,
+      .webhook_secret = options.webhook_secret,
+      .catalogue = [scenes, environments] { return read_catalogue(*scenes, *environments); },
+      .deliver = deliver};
   return std::make_unique<jobs::JobQueue>(std::move(queue));
 }
 

@@ -299,6 +299,22 @@ class Belongings(unittest.TestCase):
         self.assertEqual(client.delete("scenes", "mine")[0], 204)
         self.wait(lambda: in_memory() == 1, "a scene that no session shows stays")
 
+    def test_a_job_finds_uploads_until_they_are_deleted(self):
+        server = self.start("--jobs", str(self.folder / "jobs"))
+        client = Client(server)
+        for kind in ("scenes", "environments"):
+            self.assertEqual(client.put(kind, "mine")[0], 201)
+        entry = {"scene": "mine", "environment": "mine", "width": 48, "samples": 1}
+        job = server.call("job.create", {"entries": [entry]})["job"]
+
+        def state():
+            return server.call("job.status", {"job": job})["state"]
+        self.wait(lambda: state() not in ("queued", "running"), "the job does not end")
+        self.assertEqual(state(), "done")
+        self.assertEqual(client.delete("environments", "mine")[0], 204)
+        answer = server.ask("job.create", {"entries": [entry]})
+        self.assertEqual(answer["error"]["data"]["path"], "entries[0].environment")
+
     def test_an_entry_of_a_job_whose_scene_was_deleted_fails_alone(self):
         server = self.start("--jobs", str(self.folder / "jobs"))
         client = Client(server)
