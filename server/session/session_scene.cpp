@@ -11,6 +11,16 @@ namespace heliograph::session {
 
 using protocol::Result;
 
+namespace {
+
+/// Node numbers and what is edited mean something in that file only.
+bool from_same_file(const scene::Scene& one, const scene::Scene& other) {
+  if (one.sources.empty() || other.sources.empty()) return one.sources == other.sources;
+  return one.sources.front() == other.sources.front();
+}
+
+}  // namespace
+
 Result<protocol::SceneInfo> SessionScene::info() const {
   const std::lock_guard lock(core_.mutex);
   if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded.error();
@@ -50,6 +60,10 @@ Result<void> SessionScene::show_variant(LoadedScene scene,
                                         const std::string& by) {
   const std::lock_guard lock(core_.mutex);
   if (const Result<void> loaded = core_.require_scene(); !loaded) return loaded;
+  if (!from_same_file(*scene.scene, *core_.scene)) {
+    return protocol::error::conflict(
+        "scene", "the file of " + scene.name + " has changed since it was loaded: load it again");
+  }
   const std::vector<std::uint32_t> selected = core_.nodes.selected();
   protocol::EditDocument document = edits ? *edits : described_edits();
   if (!edits) document.environment.reset();

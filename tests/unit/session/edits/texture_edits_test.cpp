@@ -121,6 +121,27 @@ TEST(TextureEdits, RefusalsNameTheMember) {
   EXPECT_EQ(path(check_slots(*a_room(), document)), "edits.textures[0].material");
 }
 
+TEST(TextureEdits, WhatIsShownIsComparedByTheNamesOfItsImages) {
+  const auto room = a_room({replaced(0, {"floor", "base_color", "", ""}),
+                            replaced(1, {"wall", "normal", "gone", "/gone.png"})});
+  protocol::EditDocument document;
+  document.textures = {{"wall", "normal", "gone"}, {"floor", "base_color", {}}};
+  EXPECT_TRUE(has_textures(*room, document)) << "in any order";
+  EXPECT_FALSE(has_textures(*a_room(), document));
+  for (const std::vector<TextureEdit>& others :
+       {std::vector<TextureEdit>{},
+        {{"wall", "normal", "gone"}},
+        {{"wall", "normal", "other"}, {"floor", "base_color", {}}},
+        {{"wall", "occlusion", "gone"}, {"floor", "base_color", {}}},
+        {{"wall", "normal", "gone"}, {"floor", "base_color", "gone"}},
+        {{"wall", "normal", "gone"}, {"wall", "normal", "gone"}}}) {
+    document.textures = others;
+    EXPECT_FALSE(has_textures(*room, document));
+  }
+  document.textures.clear();
+  EXPECT_TRUE(has_textures(*a_room(), document));
+}
+
 TEST(TextureEdits, AnotherVariantKeepsCameraAndEdits) {
   SessionOptions options;
   options.width = 64;
@@ -144,6 +165,24 @@ TEST(TextureEdits, AnotherVariantKeepsCameraAndEdits) {
   EXPECT_EQ(session.scene().section()->cap_color, uncut.cap_color) << "of planes to come";
   session.scene().show({.name = "room", .scene = a_room(), .resources = nullptr}, "");
   EXPECT_NE(session.render_state().camera.eye, glm::vec3(7, 8, 9)) << "scene.load resets it";
+}
+
+TEST(TextureEdits, AnotherFileIsNoVariant) {
+  const auto with_file = [](std::uint64_t bytes) {
+    auto room = std::make_shared<scene::Scene>(*a_room());
+    room->sources = {{.path = "/room.glb", .bytes = bytes}};
+    return room;
+  };
+  Session session({}, std::make_shared<WakeEvent>());
+  const auto room = with_file(100);
+  session.scene().show({.name = "room", .scene = room, .resources = nullptr}, "");
+  const auto shown = session.scene().show_variant(
+      {.name = "room", .scene = with_file(200), .resources = nullptr}, std::nullopt, "");
+  ASSERT_FALSE(shown);
+  EXPECT_EQ(shown.error().code, protocol::ErrorCode::conflict);
+  EXPECT_EQ(session.render_state().scene, room);
+  EXPECT_TRUE(session.scene().show_variant(
+      {.name = "room", .scene = with_file(100), .resources = nullptr}, std::nullopt, ""));
 }
 
 TEST(TextureEdits, WithoutASceneThereIsNoVariant) {
