@@ -197,6 +197,12 @@ open.test("uploads are deleted by keyboard after a question, for all viewers", a
   assert.deepEqual(await seriousFindings(page), []);
   await page.keyboard.press("Tab");
   await scenes.getByRole("button", { name: "Delete doomed", exact: true }).waitFor();
+  // The second click of a double click does not confirm.
+  await scenes.getByRole("button", { name: "Delete kept" }).dblclick();
+  await scenes.getByRole("button", { name: "Confirm: delete kept" }).waitFor();
+  // A question stays open when others delete.
+  const others = other.page.locator("#scene-gallery");
+  await others.getByRole("button", { name: "Delete kept" }).press("Enter");
   await deleteByKeyboard(scenes, "doomed");
   await deleteByKeyboard(page.locator("#environment-gallery"), "doomed");
   await deleteByKeyboard(page.getByRole("list", { name: "Uploaded images" }), "doomed");
@@ -208,6 +214,7 @@ open.test("uploads are deleted by keyboard after a question, for all viewers", a
       .getByText("doomed", { exact: true })
       .waitFor({ state: "detached" });
   }
+  await others.getByRole("button", { name: "Confirm: delete kept" }).waitFor();
   for (const [method, kind] of [
     ["scene.list", "scenes"],
     ["environment.list", "environments"],

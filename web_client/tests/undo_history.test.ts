@@ -1,7 +1,9 @@
 import assert from "node:assert/strict";
-import test from "node:test";
+import test, { afterEach, mock } from "node:test";
 import { UndoHistory } from "../src/session/history/undo_history.ts";
 import { inverseOf, pathsOf } from "../src/session/history/settings_steps.ts";
+
+afterEach(() => mock.timers.reset());
 
 test("the inverse of a patch holds the previous values, and only those", () => {
   const tree = { taa: { enabled: true, frames: 8 }, seed: 3 };
@@ -103,33 +105,101 @@ test("steps in a scene are void when another viewer loads another scene", () => 
   assert.deepEqual(values, { exposure: 0, sun: 0 });
 });
 
+/** A change that the server answers later. */
+function pendingChange<Result>() {
+  let answer: (result: Result) => void = () => {};
+  let fail: (error: Error) => void = () => {};
+  const change = new Promise<Result>((resolve, reject) => ([answer, fail] = [resolve, reject]));
+  return { change, answer, fail };
+}
+
+const ignore = (): void => {};
+
 test("undo waits for the answer to a change that may add a step", async () => {
   const { values, history, change } = numbers();
   change("exposure", 1);
-  let answer = (): void => {};
-  const answered = new Promise<void>((resolve) => (answer = resolve));
-  const applied = history.during(answered.then(() => change("sun", 5)));
-  history.whenKnown(() => void history.undo());
+  const { change: answered, answer } = pendingChange<boolean>();
+  const applied = history.during(
+    answered.then((taken) => {
+      change("sun", 5);
+      return taken;
+    }),
+  );
+  history.whenKnown(() => void history.undo(), ignore);
   assert.equal(values.exposure, 1, "the step before is not undone in its place");
-  answer();
+  answer(true);
   await applied;
   assert.deepEqual(values, { exposure: 1, sun: 0 });
   assert.deepEqual(history.next.value, { undo: "exposure", redo: "sun" });
 });
 
-test("undo that waited for a refused change undoes the step before", async () => {
+test("undo that waited for a change that failed was meant for it, and is dropped", async () => {
   const { values, history, change } = numbers();
   change("exposure", 1);
-  const refused = history.during(Promise.reject(new Error("refused")));
-  history.whenKnown(() => void history.undo());
-  await assert.rejects(refused);
-  assert.equal(values.exposure, 0);
+  const undo = (): void => history.whenKnown(() => void history.undo(), ignore);
+  for (const refusal of [false, null]) {
+    const refused = history.during(Promise.resolve(refusal));
+    undo();
+    assert.equal(await refused, refusal);
+  }
+  const lost = history.during(Promise.reject(new Error("lost")));
+  undo();
+  await assert.rejects(lost);
+  assert.equal(values.exposure, 1);
+  undo();
+  assert.equal(values.exposure, 0, "the next one does not wait");
+});
+
+test("undo is meant for the newest change of those without an answer", async () => {
+  const { values, history, change } = numbers();
+  change("exposure", 1);
+  const [replaced, taken, later] = [0, 1, 2].map(() => pendingChange<boolean>());
+  const changes = [replaced, taken].map((one) => history.during(one!.change));
+  history.whenKnown(() => void history.undo(), ignore);
+  const laterEnd = history.during(later!.change);
+  replaced!.answer(false);
+  await changes[0];
+  later!.answer(false);
+  await laterEnd;
+  assert.equal(values.exposure, 1);
+  change("sun", 5);
+  taken!.answer(true);
+  await changes[1];
+  assert.deepEqual(values, { exposure: 1, sun: 0 });
+});
+
+test("only the last of undo and redo waits, and a long wait is told", async () => {
+  mock.timers.enable(["setTimeout"]);
+  const { history } = numbers();
+  const { change, answer } = pendingChange<boolean>();
+  const ended = history.during(change);
+  const told: string[] = [];
+  history.whenKnown(() => told.push("undo"), () => told.push("undo waits"));
+  history.whenKnown(() => told.push("redo"), () => told.push("redo waits"));
+  mock.timers.tick(499);
+  assert.deepEqual(told, []);
+  mock.timers.tick(1);
+  assert.deepEqual(told, ["redo waits"]);
+  answer(true);
+  await ended;
+  assert.deepEqual(told, ["redo waits", "redo"]);
+});
+
+test("a wait that has ended is not told", async () => {
+  mock.timers.enable(["setTimeout"]);
+  const { history } = numbers();
+  for (const taken of [true, false]) {
+    const ended = history.during(Promise.resolve(taken));
+    history.whenKnown(ignore, () => assert.fail("told"));
+    await ended;
+  }
+  mock.timers.tick(1000);
 });
 
 test("undo that waits is dropped with the history", async () => {
   const { values, history, change } = numbers();
-  const ended = history.during(Promise.resolve());
-  history.whenKnown(() => void history.undo());
+  const ended = history.during(Promise.resolve(true));
+  history.whenKnown(() => void history.undo(), ignore);
   history.clear();
   change("exposure", 1);
   await ended;

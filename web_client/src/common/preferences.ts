@@ -26,6 +26,13 @@ export const preferences = {
   setFlag: (key: string, value: boolean): void => write(key, value ? "1" : "0"),
   text: (key: string, defaultValue: string): string => read(key) ?? defaultValue,
   setText: (key: string, value: string): void => write(key, value),
+  remove: (key: string): void => {
+    try {
+      localStorage.removeItem(prefix + key);
+    } catch {
+      // Storage is disabled.
+    }
+  },
 };
 
 const nameKey = "name";

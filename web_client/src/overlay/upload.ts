@@ -88,6 +88,7 @@ export async function uploadImage(
     toasts.show(error);
     return null;
   }
+  await viewer.uploads.refresh("image");
   // Images of the same name are not the same image: "1.png" of one folder and of another.
   const name = viewer.textures.freeName(nameOf(file.name));
   try {

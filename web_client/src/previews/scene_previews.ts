@@ -2,7 +2,7 @@
 
 import { thumbnailUrl } from "../common/image_files.ts";
 import type { Viewer } from "../session/viewer.ts";
-import { storeThumbnail } from "./thumbnails.ts";
+import { forgetThumbnail, storeThumbnail } from "./thumbnails.ts";
 
 const width = 240;
 const pollMs = 1500;
@@ -21,17 +21,28 @@ export class ScenePreviews {
     viewer.scenes.watch(({ scenes }) => {
       const names = new Set(scenes.map(({ name }) => name));
       for (const name of this.settled) if (!names.has(name)) this.settled.delete(name);
+      this.resume();
+    });
+    viewer.uploads.changed.watch((change) => {
+      if (change?.kind !== "scene") return;
+      this.settled.delete(change.name);
+      forgetThumbnail(change.name);
+      if (!change.deleted) this.resume();
     });
   }
 
   /** Fetches thumbnails as they come, until `stop`. */
   start(): void {
     this.active = true;
-    if (!this.running) void this.run();
+    this.resume();
   }
 
   stop(): void {
     this.active = false;
+  }
+
+  private resume(): void {
+    if (this.active && !this.running) void this.run();
   }
 
   private async run(): Promise<void> {
@@ -54,11 +65,16 @@ export class ScenePreviews {
   private async fetchOne(scene: string): Promise<boolean> {
     if (document.hidden || !this.viewer.hello) return false;
     const path = scene.split("/").map(encodeURIComponent).join("/");
+    const changes = (): number => this.viewer.uploads.changesOf("scene", scene);
+    const before = changes();
     try {
       const url = this.viewer.connection.address.url(`api/v1/scenes/${path}/thumbnail.jpg`);
-      const response = await fetch(url);
+      // A scene that was uploaded again has another image at the same address.
+      const response = await fetch(url, { cache: "no-cache" });
       if (response.status === later) return false;
-      if (response.ok) storeThumbnail(scene, await thumbnailUrl(await response.blob(), width));
+      const image = response.ok ? await thumbnailUrl(await response.blob(), width) : null;
+      if (changes() !== before) return false; // it may be of the file before
+      if (image) storeThumbnail(scene, image);
       return true;
     } catch {
       return false; // the connection is lost; a later one tries again

@@ -12,6 +12,13 @@ export function thumbnailOf(scene: string): string | null {
   return preferences.text(keyOf(scene), "") || null;
 }
 
+/** The scene's file is another, or gone. */
+export function forgetThumbnail(scene: string): void {
+  if (thumbnailOf(scene) === null) return;
+  preferences.remove(keyOf(scene));
+  thumbnailChanged.set(scene);
+}
+
 export function storeThumbnail(scene: string, dataUrl: string): void {
   if (thumbnailOf(scene) === dataUrl) return;
   preferences.setText(keyOf(scene), dataUrl);

@@ -3,7 +3,7 @@
 import type { FrameStats, Notifications, SessionInfo } from "heliograph/messages.ts";
 import type { CameraPose } from "../common/camera_pose.ts";
 import type { Signal } from "../common/signal.ts";
-import { listUploads } from "../common/uploads.ts";
+import type { UploadLists } from "../common/uploads.ts";
 import type { Bookmarks } from "./bookmarks.ts";
 import type { Company } from "./company/company.ts";
 import type { Marks } from "./marks/marks.ts";
@@ -28,6 +28,7 @@ interface Targets {
   history: UndoHistory;
   bookmarks: Bookmarks;
   marks: Marks;
+  uploads: UploadLists;
   company: Company;
   stats: Signal<FrameStats | null>;
   viewRestore: ViewRestore;
@@ -83,7 +84,7 @@ export function receiveNotification(targets: Targets, method: string, params: un
       targets.textures.notified(params as Notifications["textures.changed"]);
       break;
     case "uploads.changed":
-      void listUploads(targets, (params as Notifications["uploads.changed"]).kind);
+      targets.uploads.notified(params as Notifications["uploads.changed"]);
       break;
     case "nodes.changed":
     case "selection.changed":

@@ -88,7 +88,8 @@ export class SceneParts {
     return this.host.history.during(this.addRecorded(request));
   }
 
-  removeLight(name: string): Promise<void> {
+  /** Whether the server takes it. */
+  removeLight(name: string): Promise<boolean> {
     return this.host.history.during(this.removeRecorded(name));
   }
 
@@ -111,9 +112,9 @@ export class SceneParts {
     return light.name;
   }
 
-  private async removeRecorded(name: string): Promise<void> {
+  private async removeRecorded(name: string): Promise<boolean> {
     const light = this.lights.value.find((one) => one.name === name);
-    if (!light || !(await this.sendRemoval(name))) return;
+    if (!light || !(await this.sendRemoval(name))) return false;
     this.host.history.add({
       label: `remove ${name}`,
       key: `remove ${name}`,
@@ -121,6 +122,7 @@ export class SceneParts {
       undo: () => void this.sendLight(addRequest(light)),
       redo: () => void this.sendRemoval(name),
     });
+    return true;
   }
 
   /** Everything that differs from the scene's file; null where the server refuses. */
@@ -287,6 +289,12 @@ export class SceneParts {
     this.lights.set(lights?.lights ?? []);
     this.materials.set(materials?.materials ?? []);
     this.environment.set(environment);
+  }
+
+  /** Files were uploaded or deleted. What is known stays where the server does not answer. */
+  async readEnvironments(): Promise<void> {
+    const environment = this.host.scene.value && (await this.list("environment.list"));
+    if (environment) this.environment.set(environment);
   }
 
   /** Another viewer has applied a document, or added or removed a light. */

@@ -6,6 +6,7 @@ import type { FrameStats, Hello, SceneInfo, SessionInfo } from "heliograph/messa
 import { ChannelClosed, RpcError, type RpcPeer } from "heliograph/rpc.ts";
 import type { CameraPose } from "../common/camera_pose.ts";
 import { Signal } from "../common/signal.ts";
+import { UploadLists } from "../common/uploads.ts";
 import { CanvasPainter } from "../stream/canvas_painter.ts";
 import { Connection } from "../stream/connection.ts";
 import { FrameMeters } from "../stream/frame_meters.ts";
@@ -55,6 +56,7 @@ export class Viewer {
   readonly marks: Marks;
   readonly own: OwnSession;
   readonly history = new UndoHistory();
+  readonly uploads = new UploadLists(this);
   readonly loading: SceneLoading;
   readonly cameraMoves: CameraMoves;
   readonly membership: Membership;
@@ -306,17 +308,21 @@ export class Viewer {
   }
 
   undo(): void {
-    this.history.whenKnown(() => {
-      const label = this.mayChange ? this.history.undo() : null;
-      if (label) this.onInfo(`Undone: ${label}`, "history");
-    });
+    this.takeStep("Undo", "Undone", () => this.history.undo());
   }
 
   redo(): void {
-    this.history.whenKnown(() => {
-      const label = this.mayChange ? this.history.redo() : null;
-      if (label) this.onInfo(`Done again: ${label}`, "history");
-    });
+    this.takeStep("Redo", "Done again", () => this.history.redo());
+  }
+
+  private takeStep(name: string, past: string, step: () => string | null): void {
+    this.history.whenKnown(
+      () => {
+        const label = this.hello && this.mayChange ? step() : null;
+        if (label) this.onInfo(`${past}: ${label}`, "history");
+      },
+      () => this.onInfo(`${name} waits for the server's answer`, "history"),
+    );
   }
 
   report(error: unknown): void {

@@ -2,7 +2,10 @@
 
 import { button, icon } from "./element.ts";
 
-/** Asks before it acts: the second click confirms, and leaving it takes the question back. */
+/**
+ * Asks before it acts: the second click confirms, unless it is that of a double click, and leaving
+ * it takes the question back.
+ */
 export function confirmButton(
   label: string,
   iconName: string,
@@ -17,7 +20,8 @@ export function confirmButton(
     node.replaceChildren(asks ? `${label.split(" ", 1)}?` : icon(iconName));
     node.classList.toggle("confirms", asks);
   };
-  const node = button(label, iconName, () => {
+  const node = button(label, iconName, ({ detail }) => {
+    if (asks && detail > 1) return; // a key counts as 0 clicks
     const confirmed = asks;
     ask(!asks);
     if (confirmed) action();

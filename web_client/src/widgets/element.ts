@@ -31,7 +31,11 @@ export function icon(name: string): SVGSVGElement {
   return svg;
 }
 
-export function button(label: string, iconName: string, action: () => void): HTMLButtonElement {
+export function button(
+  label: string,
+  iconName: string,
+  action: (event: MouseEvent) => void,
+): HTMLButtonElement {
   return element(
     "button",
     { type: "button", class: "icon-button", "aria-label": label, "data-tip": label, click: action },

@@ -86,7 +86,7 @@ test("what a slot has is told in words and can be chosen again", () => {
 });
 
 test("an image that the server has no longer stays among the choices", () => {
-  const images = new Signal([{ name: "bricks", bytes: 1 }]);
+  const images = new Signal([{ name: "bricks", bytes: 1, uploaded: true }]);
   const find = (): Texture => ({ ...planks, image: "gone" });
   const labels = optionsOf({ find, images }, "floor", "base_color").map(({ label }) => label);
   assert.deepEqual(labels, ["As in the file: planks, 64 × 32", "None", "bricks", "gone"]);

@@ -1,11 +1,13 @@
 // Selects the environment map: from a list, by its thumbnail, or by uploading a file.
 
-import type { EnvironmentState } from "heliograph/messages.ts";
+import type { EnvironmentInfo } from "heliograph/messages.ts";
 import type { Viewer } from "../../session/viewer.ts";
 import { button, element, icon, setOptions } from "../../widgets/element.ts";
 import { field } from "../../widgets/field.ts";
 import { createFileButton } from "../../widgets/file_button.ts";
+import { showNodes, updateEntries } from "../../widgets/kept_nodes.ts";
 import { createDeleteButton } from "./delete_button.ts";
+import { keepUploads } from "./upload_lists.ts";
 
 const withScene = "";
 const withSceneLabel = "Automatic";
@@ -18,6 +20,7 @@ export function createEnvironmentField(
   const select = element("select", {
     name: "environment",
     change: () => parts.chooseEnvironment(select.value || null),
+    focus: () => void viewer.uploads.refresh("environment"),
   });
   const gallery = element("div", {
     class: "gallery environments",
@@ -40,14 +43,15 @@ export function createEnvironmentField(
     upload,
   });
   const node = field("Environment", select, toggle, file);
-  let shown = "";
+  viewer.uploads.keep("environment", () => document.activeElement === select);
+  keepUploads(viewer, "environment", gallery);
+  const automatic = createTile(viewer, withScene, withSceneLabel);
+  const tiles = new Map<string, EnvironmentTile>();
   const fill = (): void => {
     const state = parts.environment.value;
     if (!state || gallery.hidden) return;
-    const names = JSON.stringify(state.environments);
-    // Rebuilt only when files are added or removed, so that a tile keeps the focus.
-    if (shown !== names) gallery.replaceChildren(...tilesOf(viewer, state));
-    shown = names;
+    updateEntries(tiles, state.environments, ({ name }) => createFileTile(viewer, name));
+    showNodes(gallery, [automatic, ...[...tiles.values()].map(({ node }) => node)]);
     for (const tile of gallery.querySelectorAll<HTMLElement>(".tile")) {
       const chosen = tile.dataset.environment === (state.current ?? withScene);
       tile.setAttribute("aria-pressed", String(chosen));
@@ -69,43 +73,55 @@ export function createEnvironmentField(
   return [node, gallery];
 }
 
-function tilesOf(viewer: Viewer, { environments }: EnvironmentState): HTMLElement[] {
-  const tile = (value: string, label: string, image: HTMLElement): HTMLElement =>
-    element(
-      "button",
-      {
-        type: "button",
-        class: "tile",
-        "data-environment": value,
-        click: () => viewer.parts.chooseEnvironment(value || null),
-      },
-      image,
-      element("span", { class: "tile-name" }, label),
-    );
-  return [
-    tile(withScene, withSceneLabel, placeholder()),
-    ...environments.map(({ name, bytes, uploaded }) =>
-      element(
-        "div",
-        { class: "tile-box" },
-        tile(name, name, thumbnail(viewer, name, bytes)),
-        uploaded ? createDeleteButton(viewer, "environment", name) : null,
-      ),
-    ),
-  ];
+interface EnvironmentTile {
+  node: HTMLElement;
+  update(environment: EnvironmentInfo): void;
+}
+
+function createFileTile(viewer: Viewer, name: string): EnvironmentTile {
+  const tile = createTile(viewer, name, name);
+  const remove = createDeleteButton(viewer, "environment", name);
+  let address = "";
+  const update = ({ bytes, uploaded }: EnvironmentInfo): void => {
+    remove.hidden = !uploaded;
+    const url = thumbnailAddress(viewer, name, bytes);
+    if (url !== address) tile.firstElementChild?.replaceWith(thumbnail(url));
+    address = url;
+  };
+  return { node: element("div", { class: "tile-box" }, tile, remove), update };
+}
+
+function createTile(viewer: Viewer, value: string, label: string): HTMLElement {
+  return element(
+    "button",
+    {
+      type: "button",
+      class: "tile",
+      "data-environment": value,
+      click: () => viewer.parts.chooseEnvironment(value || null),
+    },
+    placeholder(),
+    element("span", { class: "tile-name" }, label),
+  );
 }
 
 function placeholder(): HTMLElement {
   return element("span", { class: "tile-image placeholder" }, icon("sun"));
 }
 
-/** The server makes it from the file; where that fails a symbol is shown. */
-function thumbnail(viewer: Viewer, name: string, bytes: number): HTMLElement {
+/** Another file of this name has another image, and thus another address. */
+function thumbnailAddress({ connection, uploads }: Viewer, name: string, bytes: number): string {
   const path = name.split("/").map(encodeURIComponent).join("/");
-  const url = viewer.connection.address.url(`api/v1/environments/${path}/thumbnail.png`);
-  url.searchParams.set("bytes", String(bytes)); // another file of this name has another image
+  const url = connection.address.url(`api/v1/environments/${path}/thumbnail.png`);
+  url.searchParams.set("bytes", String(bytes));
+  url.searchParams.set("changes", String(uploads.changesOf("environment", name)));
+  return url.href;
+}
+
+/** The server makes it from the file; where that fails a symbol is shown. */
+function thumbnail(address: string): HTMLElement {
   const image = element("img", {
-    src: url.href,
+    src: address,
     alt: "",
     class: "tile-image",
     loading: "lazy",

@@ -5,12 +5,14 @@ import { favourites, favouritesFirst, setFavourite } from "../../common/favourit
 import { thumbnailChanged, thumbnailOf } from "../../previews/thumbnails.ts";
 import type { Viewer } from "../../session/viewer.ts";
 import { element, icon, setText } from "../../widgets/element.ts";
+import { showNodes, updateEntries } from "../../widgets/kept_nodes.ts";
 import { createDeleteButton } from "./delete_button.ts";
 
 interface SceneTile {
   node: HTMLElement;
   choose: HTMLButtonElement;
   star: HTMLButtonElement;
+  update(scene: SceneEntry): void;
 }
 
 export function createSceneGallery(viewer: Viewer): HTMLElement {
@@ -40,12 +42,14 @@ export function createSceneGallery(viewer: Viewer): HTMLElement {
   const fill = (): void => {
     const { scenes, current } = viewer.scenes.value;
     const entries = scenes.map(({ name, uploaded }) => `${name} ${uploaded}`).join("\n");
-    // Rebuilt only when scenes are added or removed, so that a tile keeps the focus.
+    // Sorted only when scenes are added or removed, so that none moves while it is chosen.
     if (shown !== entries) {
       shown = entries;
-      tiles.clear();
-      for (const scene of favouritesFirst(scenes)) tiles.set(scene.name, createTile(viewer, scene));
-      grid.replaceChildren(...[...tiles.values()].map(({ node }) => node));
+      updateEntries(tiles, favouritesFirst(scenes), ({ name }) => createTile(viewer, name));
+      showNodes(
+        grid,
+        [...tiles.values()].map(({ node }) => node),
+      );
       filter();
     }
     for (const [name, { choose }] of tiles) {
@@ -69,7 +73,7 @@ export function createSceneGallery(viewer: Viewer): HTMLElement {
   );
 }
 
-function createTile(viewer: Viewer, { name, uploaded }: SceneEntry): SceneTile {
+function createTile(viewer: Viewer, name: string): SceneTile {
   const choose = element(
     "button",
     { type: "button", class: "tile", click: () => void viewer.loading.load(name) },
@@ -88,8 +92,10 @@ function createTile(viewer: Viewer, { name, uploaded }: SceneEntry): SceneTile {
     },
     icon("star"),
   );
-  const remove = uploaded ? createDeleteButton(viewer, "scene", name) : null;
-  return { node: element("div", { class: "tile-box" }, choose, star, remove), choose, star };
+  const remove = createDeleteButton(viewer, "scene", name);
+  const node = element("div", { class: "tile-box" }, choose, star, remove);
+  const update = ({ uploaded }: SceneEntry): void => void (remove.hidden = !uploaded);
+  return { node, choose, star, update };
 }
 
 function thumbnail(source: string | null): HTMLElement {

@@ -7,6 +7,7 @@ import { button, element, setOptions } from "../../widgets/element.ts";
 import { field } from "../../widgets/field.ts";
 import { createFileButton } from "../../widgets/file_button.ts";
 import { createSceneGallery } from "./scene_gallery.ts";
+import { keepUploads } from "./upload_lists.ts";
 
 export function createScenePicker(viewer: Viewer, upload: (file: File) => void): HTMLElement[] {
   const previews = new ScenePreviews(viewer);
@@ -19,13 +20,18 @@ export function createScenePicker(viewer: Viewer, upload: (file: File) => void):
   });
   toggle.setAttribute("aria-expanded", "false");
   toggle.setAttribute("aria-controls", gallery.id);
+  keepUploads(viewer, "scene", gallery);
+  const select = sceneList(viewer);
+  viewer.uploads.keep("scene", () => document.activeElement === select);
+  // Then the page says so.
+  viewer.uploads.keep("scene", () => viewer.scenes.value.scenes.length === 0);
   const file = createFileButton(viewer, {
     label: "Upload",
     tip: "Upload a scene file (.glb)",
     accept: ".glb",
     upload,
   });
-  return [field("Scene", sceneList(viewer), toggle, file), gallery];
+  return [field("Scene", select, toggle, file), gallery];
 }
 
 function sceneList(viewer: Viewer): HTMLSelectElement {

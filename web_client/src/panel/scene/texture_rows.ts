@@ -7,7 +7,9 @@ import type { Viewer } from "../../session/viewer.ts";
 import { button, element, setOptions } from "../../widgets/element.ts";
 import { field } from "../../widgets/field.ts";
 import { createFileButton } from "../../widgets/file_button.ts";
+import { showNodes, updateEntries } from "../../widgets/kept_nodes.ts";
 import { createDeleteButton } from "./delete_button.ts";
+import { keepUploads } from "./upload_lists.ts";
 
 /** File names that the server takes as images. */
 const imageFiles = ".png,.jpg,.jpeg,.webp,.ktx2";
@@ -57,28 +59,29 @@ export function createTextureRows(
     }
     show(material);
   });
+  textures.images.watch(() => show(material));
+  keepUploads(viewer, "image", node);
   return { node, show };
 }
 
 /** The uploaded images, which can be deleted. */
 function createImageList(viewer: Viewer): HTMLElement {
   const list = element("ul", { class: "bookmarks", "aria-label": "Uploaded images" });
-  let shown = "";
+  const entries = new Map<string, { node: HTMLElement }>();
   viewer.textures.images.watch((images) => {
-    list.hidden = images.length === 0;
-    const names = images.map(({ name }) => name);
-    // Made again only for other images, so that a button keeps the focus.
-    if (shown === names.join()) return;
-    shown = names.join();
-    list.replaceChildren(
-      ...names.map((name) =>
-        element(
-          "li",
-          {},
-          element("span", { class: "uploaded-image" }, name),
-          createDeleteButton(viewer, "image", name),
-        ),
+    const uploaded = images.filter((image) => image.uploaded);
+    updateEntries(entries, uploaded, ({ name }) => ({
+      node: element(
+        "li",
+        {},
+        element("span", { class: "uploaded-image" }, name),
+        createDeleteButton(viewer, "image", name),
       ),
+    }));
+    list.hidden = entries.size === 0;
+    showNodes(
+      list,
+      [...entries.values()].map(({ node }) => node),
     );
   });
   return list;

@@ -118,6 +118,13 @@ export class Textures {
     }
   }
 
+  /** Files were uploaded or deleted. What is known stays where the server does not answer. */
+  async readImages(): Promise<void> {
+    if (!this.host.capabilities.has("textures.list")) return;
+    const answer = await this.host.rpc.request("images.list", {}).catch(() => null);
+    if (answer) this.images.set(answer.images);
+  }
+
   private async send(material: string, slot: string, choice: TextureChoice): Promise<boolean> {
     const { loading, rpc } = this.host;
     const name = `the ${humanise(slot).toLowerCase()} texture`;

@@ -27,7 +27,18 @@ function stays({ ofScene }: Step): boolean {
   return !ofScene;
 }
 
+/** Undo or redo that was asked for while changes were without an answer. */
+interface Waiting {
+  act: () => void;
+  awaited: Set<Promise<unknown>>;
+  /** The newest of them: what is to be undone. */
+  meant: Promise<unknown>;
+  timer: ReturnType<typeof setTimeout>;
+}
+
 const mergeWithinMs = 900;
+/** A wait that is longer is told. */
+const shortWaitMs = 500;
 const maxSteps = 200;
 
 export class UndoHistory {
@@ -37,9 +48,8 @@ export class UndoHistory {
   /** While a scene is seen that may not stay: what was done and undone before it. */
   private before: { done: number; undone: Step[] } | null = null;
   /** Changes that the server has not answered: each may still add a step. */
-  private unanswered = 0;
-  /** Undo and redo that were asked for meanwhile. */
-  private waiting: (() => void)[] = [];
+  private readonly unanswered = new Set<Promise<unknown>>();
+  private waiting: Waiting | null = null;
   private readonly clock: () => number;
 
   constructor(clock: () => number = () => performance.now()) {
@@ -48,22 +58,32 @@ export class UndoHistory {
 
   /**
    * Holds back what is passed to `whenKnown` until `change` ends, which adds its step when the
-   * server has taken it: what is undone then is that change, not the one before.
+   * server has taken it: what is undone then is that change, not the one before. The result is
+   * false or null where it was not taken.
    */
-  async during<Result>(change: Promise<Result>): Promise<Result> {
-    this.unanswered += 1;
+  async during<Result extends string | boolean | null>(change: Promise<Result>): Promise<Result> {
+    this.unanswered.add(change);
+    let taken = false;
     try {
-      return await change;
+      const result = await change;
+      taken = result !== null && result !== false;
+      return result;
     } finally {
-      this.unanswered -= 1;
-      if (this.unanswered === 0) for (const act of this.waiting.splice(0)) act();
+      this.answered(change, taken);
     }
   }
 
-  /** Calls `act`, which undoes or redoes, as soon as no change is without an answer. */
-  whenKnown(act: () => void): void {
-    if (this.unanswered === 0) act();
-    else this.waiting.push(act);
+  /**
+   * Calls `act`, which undoes or redoes, as soon as the changes of now are answered; not at all
+   * when the newest of them fails, which it was meant for. Only the last `act` waits, and `waits`
+   * is called when that takes a while.
+   */
+  whenKnown(act: () => void, waits: () => void): void {
+    this.stopWaiting();
+    const awaited = new Set(this.unanswered);
+    const meant = [...awaited].at(-1);
+    if (!meant) act();
+    else this.waiting = { act, awaited, meant, timer: setTimeout(waits, shortWaitMs) };
   }
 
   /** Adds a change that was made. */
@@ -150,8 +170,23 @@ export class UndoHistory {
     this.done = [];
     this.undone = [];
     this.before = null;
-    this.waiting = [];
+    this.stopWaiting();
     this.announce();
+  }
+
+  private answered(change: Promise<unknown>, taken: boolean): void {
+    this.unanswered.delete(change);
+    const { waiting } = this;
+    if (!waiting?.awaited.delete(change)) return;
+    const failed = change === waiting.meant && !taken;
+    if (!failed && waiting.awaited.size > 0) return;
+    this.stopWaiting();
+    if (!failed) waiting.act();
+  }
+
+  private stopWaiting(): void {
+    clearTimeout(this.waiting?.timer);
+    this.waiting = null;
   }
 
   /** Whether the last step that was done may be undone now. */
