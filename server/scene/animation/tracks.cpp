@@ -28,19 +28,21 @@ Range range_of(PointedProperty property) {
     case PointedProperty::light_intensity:
       return {0.0f, 1e12f};
     case PointedProperty::light_color:
-    case PointedProperty::light_range:
     case PointedProperty::emissive:
     case PointedProperty::emissive_strength:
     case PointedProperty::thickness:
-    case PointedProperty::attenuation_distance:
       return {0.0f, 1e6f};
+    // 0 would be infinite for the device.
+    case PointedProperty::light_range:
+    case PointedProperty::attenuation_distance:
+      return {1e-6f, 1e6f};
     case PointedProperty::inner_cone:
     case PointedProperty::outer_cone:
       return {0.0f, quarter_turn};
     case PointedProperty::vertical_fov:
       return {1e-3f, 179.0f / 90.0f * quarter_turn};
     case PointedProperty::orthographic_height:
-      return {1e-6f, no_limit};
+      return {-0.25f * no_limit, 0.25f * no_limit};  // its absolute value is shown, twice
     case PointedProperty::normal_scale:
     case PointedProperty::clearcoat_normal_scale:
       return {-16.0f, 16.0f};
@@ -107,6 +109,11 @@ std::vector<bool> shown_nodes(const Scene& scene, const Clip* clip, double secon
   return shown;
 }
 
+bool switches_nodes(const Clip& clip) {
+  return std::ranges::find(clip.tracks, PointedProperty::visible, &Track::property) !=
+         clip.tracks.end();
+}
+
 bool changes_lens(const Clip& clip, const Camera& camera) {
   return std::ranges::any_of(clip.tracks,
                              [&](const Track& track) { return is_lens_of(track, camera); });
@@ -120,7 +127,7 @@ Camera with_lens(Camera camera, const Clip& clip, double seconds) {
     if (track.property == PointedProperty::vertical_fov) {
       camera.vertical_fov = glm::degrees(value);
     } else {
-      camera.orthographic_height = 2.0f * value;
+      camera.orthographic_height = std::max(2.0f * std::abs(value), 1e-6f);
     }
   }
   return camera;

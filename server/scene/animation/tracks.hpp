@@ -19,6 +19,9 @@ std::array<float, 4> value_of(const Track& track, float moment);
 /// Empty where all are.
 std::vector<bool> shown_nodes(const Scene& scene, const Clip* clip, double seconds);
 
+/// Whether the clip shows and hides nodes.
+bool switches_nodes(const Clip& clip);
+
 /// Whether the clip changes the lens of a camera of the scene.
 bool changes_lens(const Clip& clip, const Camera& camera);
 /// Such a camera with the lens that it has in the clip at `seconds`.

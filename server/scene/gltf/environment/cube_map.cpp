@@ -7,7 +7,6 @@
 #include <glm/gtc/constants.hpp>
 
 #include "scene/first_failure.hpp"
-#include "scene/image/image_size.hpp"
 #include "scene/import_error.hpp"
 
 namespace heliograph::scene {
@@ -15,6 +14,8 @@ namespace {
 
 // Filters of the renderer need some texels even where the cube has few.
 constexpr std::uint32_t least_width = 64;
+/// 100 MB of radiance. Light needs no more, and a small file cannot ask for more memory.
+constexpr std::uint32_t most_width = 4096;
 
 /// Directions of a face's middle, and of right and down in its file.
 struct FaceAxes {
@@ -127,8 +128,8 @@ std::vector<glm::vec2> sines_and_cosines(std::uint32_t count, double first, doub
 }  // namespace
 
 std::uint32_t environment_width(const CubeFaces& faces) {
-  return std::uint32_t(std::clamp<std::uint64_t>(std::uint64_t{4} * largest_side(faces),
-                                                 least_width, largest_image_side));
+  return std::uint32_t(
+      std::clamp<std::uint64_t>(std::uint64_t{4} * largest_side(faces), least_width, most_width));
 }
 
 Environment environment_of_cube(const CubeFaces& faces, const glm::quat& rotation, float intensity,
@@ -138,7 +139,7 @@ Environment environment_of_cube(const CubeFaces& faces, const glm::quat& rotatio
   environment.height = environment.width / 2;
   environment.radiance.resize(std::size_t(environment.width) * environment.height);
   // Points per texel and axis: texels of the cube are smaller near its edges.
-  const std::uint32_t grid = std::max(2u, 4 * largest_side(faces) / environment.width);
+  const std::uint32_t grid = std::clamp(4 * largest_side(faces) / environment.width, 2u, 4u);
   constexpr double pi = glm::pi<double>();
   const auto azimuths = sines_and_cosines(environment.width * grid, -pi, 2.0 * pi);
   const auto polars = sines_and_cosines(environment.height * grid, 0.0, pi);

@@ -7,8 +7,10 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 
+#include "scene/gltf/export/animation_channels.hpp"
 #include "scene/gltf/export/light_values.hpp"
 #include "scene/gltf/schema/place.hpp"
 #include "scene/quote.hpp"
@@ -59,15 +61,9 @@ void erase_place(json& node) {
 
 /// Joints, and nodes that animations move: their transforms are not the light's alone.
 std::set<std::size_t> find_held_nodes(EditableDocument& document) {
-  std::set<std::size_t> held;
+  std::set<std::size_t> held = find_animated_nodes(document);
   for (const json& skin : document.list("skins")) {
     for (const json& joint : skin.at("joints")) held.insert(joint.get<std::size_t>());
-  }
-  for (const json& animation : document.list("animations")) {
-    for (const json& channel : animation.at("channels")) {
-      const json& target = channel.at("target");
-      if (target.contains("node")) held.insert(target.at("node").get<std::size_t>());
-    }
   }
   return held;
 }
@@ -142,24 +138,30 @@ class LightExport {
   void write_values(std::size_t index, const shared::Light& before, const LightChange& now) {
     json& node = document_.node(index);
     if (has_area_light(node)) return write_area_light(node["extras"]["areaLight"], now);
-    json& light = own_light(node);
+    json& light = own_light(node, edited_members(before, now));
     write_punctual_light(light, before, now);
     if (has_other_size(before, now.device)) {
       write_size(document_.extras(node, item_path("", "nodes", index)), now.device);
     }
   }
 
-  /// The light of a node that it shares with no other.
-  json& own_light(json& node) {
+  /// The light of a node that it shares with no other. `edited` members are not animated, others
+  /// as before.
+  json& own_light(json& node, std::span<const std::string_view> edited) {
     json& reference = node["extensions"][lights_extension]["light"];
     const auto index = reference.get<std::size_t>();
     json& lights = punctual_lights();
-    if (uses_[index] == 1) return lights[index];
+    if (uses_[index] == 1) {
+      erase_light_channels(document_, index, edited);
+      return lights[index];
+    }
     --uses_[index];
     json copy = lights[index];
     lights.push_back(std::move(copy));
-    reference = lights.size() - 1;
-    uses_[lights.size() - 1] = 1;
+    const std::size_t own = lights.size() - 1;
+    copy_light_channels(document_, index, own, edited);
+    reference = own;
+    uses_[own] = 1;
     return lights.back();
   }
 

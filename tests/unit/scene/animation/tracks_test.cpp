@@ -57,6 +57,13 @@ TEST(Tracks, AnIndexOfRefractionIsZeroOrOneAndMore) {
   EXPECT_FLOAT_EQ(value_of(track, 2.0f)[0], 1.6f);
 }
 
+TEST(Tracks, DistancesThatEndAreNotInfinite) {
+  for (const auto property :
+       {PointedProperty::light_range, PointedProperty::attenuation_distance}) {
+    EXPECT_GT(value_of(track_of(property, 0, {1.0f, 0.0f}), 2.0f)[0], 0.0f) << "0 is infinite";
+  }
+}
+
 TEST(Tracks, HiddenNodesHideWhatIsBelow) {
   Scene scene;
   scene.nodes = {{.name = "above"}, {.name = "below", .parent = 0}, {.name = "other"}};
@@ -91,6 +98,9 @@ TEST(Tracks, ClipsChangeTheLensesOfTheFilesCameras) {
   EXPECT_NEAR(camera_at(scene, perspective, &scene.clips[0], 1.0).vertical_fov, 67.5f, 1e-3f);
   EXPECT_EQ(camera_at(scene, perspective, nullptr, 1.0).vertical_fov, perspective.vertical_fov);
   EXPECT_FLOAT_EQ(camera_at(scene, flat, &scene.clips[1], 1.0).orthographic_height, 4.0f);
+  const Clip mirrored = clip_of({track_of(PointedProperty::orthographic_height, 4, {-2, -2})});
+  EXPECT_FLOAT_EQ(camera_at(scene, flat, &mirrored, 0.0).orthographic_height, 4.0f)
+      << "as the importer reads it";
   perspective.node.reset();
   EXPECT_FALSE(carries(scene, scene.clips[0], perspective)) << "it is none of the file's";
 }
