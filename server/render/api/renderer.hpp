@@ -22,6 +22,10 @@ namespace heliograph::render {
 /// Of `side` pixels those that are drawn at `scale`, 0 to 1: at least one.
 std::uint32_t drawn_side(std::uint32_t side, float scale);
 
+/// Why lights or materials are others than before: a client has edited them, or a clip that plays
+/// has come to another moment.
+enum class PartChange { edit, animation };
+
 /// Renders one view of a scene: camera, settings, size and history of one session.
 /// Not thread safe: one thread calls it.
 class Renderer {
@@ -38,10 +42,12 @@ class Renderer {
   /// which no clip moves. Materials: as many as the scene has, with the same textures and alpha;
   /// Material::layer counts `layers`, of which the first adds nothing; none: the scene's. Rays that
   /// pass transmissive surfaces go by the file's. set_scene brings back the file's. Lights that
-  /// only move keep the histories.
-  void set_lights(std::span<const shared::Light> lights);
+  /// only move keep the histories, and so does all that a clip animates: it is rectified as other
+  /// motion is.
+  void set_lights(std::span<const shared::Light> lights, PartChange change = PartChange::edit);
   void set_materials(std::span<const shared::Material> materials,
-                     std::span<const shared::MaterialLayer> layers = {});
+                     std::span<const shared::MaterialLayer> layers = {},
+                     PartChange change = PartChange::edit);
   /// Another environment than the scene's own; null: its own again.
   void set_environment(std::shared_ptr<const LitEnvironment> environment);
   /// Leaves out the instances for which `hidden` is true, one for each of the scene's; empty: none.

@@ -48,8 +48,8 @@ void Renderer::set_scene(std::shared_ptr<const SceneResources> scene) {
   state_->discard_frame_plan();
 }
 
-void Renderer::set_lights(std::span<const shared::Light> lights) {
-  const bool moves = only_move(state_->moving->lights(), lights);
+void Renderer::set_lights(std::span<const shared::Light> lights, PartChange change) {
+  const bool moves = change == PartChange::animation || only_move(state_->moving->lights(), lights);
   // The plan refers to the table of lights, which another number of them replaces.
   if (lights.size() != state_->moving->lights().size()) state_->compiled.reset();
   if (state_->moving->set_lights(lights)) {
@@ -61,11 +61,11 @@ void Renderer::set_lights(std::span<const shared::Light> lights) {
 }
 
 void Renderer::set_materials(std::span<const shared::Material> materials,
-                             std::span<const shared::MaterialLayer> layers) {
+                             std::span<const shared::MaterialLayer> layers, PartChange change) {
   if (state_->moving->set_materials(materials, layers)) {
     state_->discard_frame_plan();
   } else {
-    state_->has_previous = false;
+    if (change == PartChange::edit) state_->has_previous = false;
     state_->restart_accumulation();
   }
 }

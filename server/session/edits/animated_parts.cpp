@@ -245,13 +245,19 @@ void AnimatedParts::update_hidden(const PartsMoment& moment, const std::vector<b
 bool ShownParts::show(render::Renderer& renderer, const PartsMoment& moment) {
   const SceneParts parts = animated_.at(moment);
   const SceneParts before = std::exchange(shown_, parts);
+  const SceneParts edited_before = std::exchange(edited_, moment.edited);
+  const auto why = [](bool same_edits) {
+    return same_edits ? render::PartChange::animation : render::PartChange::edit;
+  };
   if (parts.lights != before.lights) {
-    renderer.set_lights(parts.lights ? *parts.lights : lights_of(*moment.scene));
+    renderer.set_lights(parts.lights ? *parts.lights : lights_of(*moment.scene),
+                        why(moment.edited.lights == edited_before.lights));
   }
   if (parts.materials != before.materials) {
     renderer.set_materials(
         parts.materials ? *parts.materials : moment.scene->materials,
-        parts.layers ? std::span(*parts.layers) : std::span<const shared::MaterialLayer>());
+        parts.layers ? std::span(*parts.layers) : std::span<const shared::MaterialLayer>(),
+        why(moment.edited.materials == edited_before.materials));
   }
   if (parts.hidden == before.hidden) return false;
   renderer.set_hidden(parts.hidden ? *parts.hidden : std::vector<bool>());

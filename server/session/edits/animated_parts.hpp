@@ -57,6 +57,7 @@ class ShownParts {
 
  private:
   AnimatedParts animated_;
+  SceneParts edited_;  // of which `shown_` was made
   SceneParts shown_;
 };
 

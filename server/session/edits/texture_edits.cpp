@@ -191,6 +191,18 @@ void describe_textures(const scene::Scene& scene, protocol::EditDocument& docume
   }
 }
 
+bool has_textures(const scene::Scene& scene, const protocol::EditDocument& document) {
+  protocol::EditDocument shown;
+  describe_textures(scene, shown);
+  const auto ordered = [](std::vector<protocol::TextureEdit> textures) {
+    std::ranges::sort(textures, {}, [](const protocol::TextureEdit& texture) {
+      return std::tie(texture.material, texture.slot);
+    });
+    return textures;
+  };
+  return ordered(shown.textures) == ordered(document.textures);
+}
+
 Result<TextureOverrides> overrides_of(const protocol::EditDocument& document,
                                       const SceneCatalogue& catalogue) {
   TextureOverrides textures;

@@ -43,6 +43,9 @@ protocol::Result<TextureOverrides> with_change(TextureOverrides textures,
                                                const SceneCatalogue& images);
 /// The part of a document that is about textures.
 void describe_textures(const scene::Scene& scene, protocol::EditDocument& document);
+/// Whether a scene has just the textures that a document asks for. Their images are compared by
+/// name: what is shown needs no file, which may be gone.
+bool has_textures(const scene::Scene& scene, const protocol::EditDocument& document);
 /// What a document asks for. Whether the scene has the slots is not known before it is imported.
 /// @return an error that names the entry below "edits"
 protocol::Result<TextureOverrides> overrides_of(const protocol::EditDocument& document,

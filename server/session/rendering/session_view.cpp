@@ -129,13 +129,15 @@ SessionView::Work SessionView::advance(bool may_draw) {
   if (broadcast_.pump()) return Work::small;
   if (!frame_due()) return Work::none;
   // What a clip shows or hides has to be prepared. A frame comes of that before another moment.
-  if (state_.animation.playing && !moment_prepared_) adopt_moment();
+  const bool switches_nodes = state_.animation.playing && clip_switches_nodes();
+  if (switches_nodes && !prepared_moment_) adopt_moment();
   if (begin_preparing()) {
-    moment_prepared_ = true;
+    if (switches_nodes && !prepared_moment_) prepared_moment_ = shown_moment_;
     return Work::small;
   }
   if (!may_draw) return Work::held_back;
-  moment_prepared_ = false;
+  if (state_.animation.playing && !switches_nodes) adopt_moment();
+  prepared_moment_.reset();
   begin_next_frame();
   return Work::drawing;
 }

@@ -97,6 +97,7 @@ class SessionView {
   void adopt(RenderState next);
   void adopt_edits(const RenderState& before);
   void adopt_moment();
+  bool clip_switches_nodes() const;
   void adopt_draw_scale();
   void keep_buffers();
   void set_draw_scale(float scale);
@@ -146,8 +147,9 @@ class SessionView {
   bool first_frame_due_ = false;  // rendered without viewers
 
   RenderState state_;
-  ShownParts shown_parts_;        // by the renderer
-  bool moment_prepared_ = false;  // for the next frame, since the last one
+  ShownParts shown_parts_;                 // by the renderer
+  double shown_moment_ = 0.0;              // of the clip, seconds
+  std::optional<double> prepared_moment_;  // of the clip, for the next frame; seconds
   Clock::time_point camera_moved_at_;
   float draw_scale_ = 1.0f;            // of the renderer
   Clock::time_point moving_frame_at_;  // the end of the newest moving frame

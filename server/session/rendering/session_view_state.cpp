@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "scene/animation/pose.hpp"
+#include "scene/animation/tracks.hpp"
 #include "scene/camera/camera.hpp"
 #include "session/devices/device_migration.hpp"
 #include "session/event_log.hpp"
@@ -50,6 +51,7 @@ void SessionView::adopt(RenderState next) {
   if (same_scene && !scene::same_view(state_.camera, before.camera)) {
     camera_moved_at_ = Clock::now();
   }
+  if (!same_scene || state_.animation != before.animation) prepared_moment_.reset();
   adopt_moment();
   apply(state_.settings);
 }
@@ -75,7 +77,8 @@ void SessionView::adopt_edits(const RenderState& before) {
 /// What the clip shows at this time: edited and animated parts, the pose, and the camera where the
 /// clip moves it.
 void SessionView::adopt_moment() {
-  const double seconds = state_.animation.at(state_.now());
+  const double seconds = prepared_moment_.value_or(state_.animation.at(state_.now()));
+  shown_moment_ = seconds;
   const scene::Clip* const clip =
       state_.scene ? scene::find_clip(*state_.scene, state_.animation.clip) : nullptr;
   discontinuous_ |= shown_parts_.show(*renderer_, {.scene = state_.scene,
@@ -89,6 +92,12 @@ void SessionView::adopt_moment() {
   renderer_->set_camera(state_.camera_follows && clip
                             ? scene::camera_at(*state_.scene, state_.camera, clip, seconds)
                             : state_.camera);
+}
+
+bool SessionView::clip_switches_nodes() const {
+  const scene::Clip* const clip =
+      state_.scene ? scene::find_clip(*state_.scene, state_.animation.clip) : nullptr;
+  return clip && scene::switches_nodes(*clip);
 }
 
 bool SessionView::next_frame_moves() const {

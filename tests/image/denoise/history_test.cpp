@@ -207,5 +207,32 @@ TEST(EffectivePipeline, MatchesRequestedTracerAndPasses) {
   }
 }
 
+/// The shortest history of the frame.
+float shortest_history(RendererRig& rig) {
+  const render::FloatImage lengths = rig.capture("visibility.history_length");
+  float shortest = lengths.rgba[0];
+  for (std::size_t i = 0; i < lengths.rgba.size(); i += 4) {
+    shortest = std::min(shortest, lengths.rgba[i]);
+  }
+  return shortest;
+}
+
+// Otherwise one animated material makes the whole image as noisy as a first frame.
+TEST(History, StaysWhereAClipAnimatesMaterialsAndNotWhereTheyAreEdited) {
+  const std::shared_ptr<const scene::Scene> scene = wall();
+  JitterRig rig(scene, before_wall(0.0f), false);
+  std::vector<shared::Material> materials = scene->materials;
+  const auto show_other = [&](render::PartChange change) {
+    materials[0].roughness += 0.01f;
+    rig.renderer.set_materials(materials, {}, change);
+    rig.renderer.render();
+  };
+  rig.renderer.render();
+  for (int i = 0; i < 3; ++i) show_other(render::PartChange::animation);
+  EXPECT_EQ(shortest_history(rig), 3.0f) << "since there is a table of other materials";
+  show_other(render::PartChange::edit);
+  EXPECT_EQ(shortest_history(rig), 1.0f);
+}
+
 }  // namespace
 }  // namespace heliograph::test
