@@ -16,11 +16,14 @@ namespace heliograph::protocol {
 struct ImageFile {
   std::string name;
   std::uint64_t bytes = 0;
+  bool uploaded = false;
 
   static constexpr auto fields() {
     return std::tuple{
         field("name", &ImageFile::name, "Name for textures.set."),
         field("bytes", &ImageFile::bytes, "Size of the file.").unit("bytes"),
+        field("uploaded", &ImageFile::uploaded,
+              "Whether it was uploaded: then DELETE /api/v1/images/NAME deletes it."),
     };
   }
   bool operator==(const ImageFile&) const = default;
@@ -31,7 +34,7 @@ struct ImageList {
 
   static constexpr auto fields() {
     return std::tuple{
-        field("images", &ImageList::images, "The images that were uploaded, by name."),
+        field("images", &ImageList::images, "The images in the folder of uploads, by name."),
     };
   }
   bool operator==(const ImageList&) const = default;

@@ -1025,11 +1025,13 @@ export interface ImagesListResultImages {
   bytes: number;
   /** Name for textures.set. */
   name: string;
+  /** Whether it was uploaded: then DELETE /api/v1/images/NAME deletes it. */
+  uploaded: boolean;
 }
 
 /** Result of images.list. */
 export interface ImagesListResult {
-  /** The images that were uploaded, by name. */
+  /** The images in the folder of uploads, by name. */
   images: ImagesListResultImages[];
 }
 

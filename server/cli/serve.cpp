@@ -172,7 +172,9 @@ int run(const ServeOptions& options) {
     hosting.scene_roots.push_back(uploads->scenes());
     hosting.environment_roots.push_back(uploads->environments());
     hosting.image_roots.push_back(uploads->images());
-    hosting.upload_roots = {uploads->scenes(), uploads->environments(), uploads->images()};
+    hosting.upload_roots = {.scenes = uploads->scenes(),
+                            .environments = uploads->environments(),
+                            .images = uploads->images()};
     hosting.max_upload_bytes = uploads->max_bytes();
   }
   const std::optional<std::string> scene =

@@ -45,6 +45,11 @@ Paths with(Paths paths, const Paths& more) {
   return paths;
 }
 
+const std::filesystem::path& root_of(const UploadRoots& roots, UploadKind kind) {
+  if (kind == UploadKind::scene) return roots.scenes;
+  return kind == UploadKind::environment ? roots.environments : roots.images;
+}
+
 /// Whether the caller has control of what the method changes: of the session, or of its camera
 /// where that is the viewer's own; who may annotate is the server's choice.
 Result<void> may_change(const Session& session, const protocol::MethodDescriptor& method,
@@ -175,15 +180,25 @@ Result<SceneThumbnails::File> SessionHost::scene_thumbnail(const std::string& sc
   return found;
 }
 
-bool SessionHost::was_uploaded(const CatalogueEntry& entry) const {
-  return std::ranges::count(options_.upload_roots, entry.root) > 0 && is_upload(entry);
+bool SessionHost::was_uploaded(UploadKind kind, const CatalogueEntry& entry) const {
+  // The studio has no root, as uploads have none where they are not allowed.
+  return !entry.root.empty() && entry.root == root_of(options_.upload_roots, kind) &&
+         is_upload(entry);
 }
 
-void SessionHost::forget_thumbnail(protocol::UploadKind kind, const std::string& name) {
-  if (kind == protocol::UploadKind::environment) return environments_.forget_thumbnail(name);
-  if (kind != protocol::UploadKind::scene) return;
-  const Result<CatalogueEntry> entry = catalogue_.find(name);
-  if (entry && was_uploaded(*entry)) thumbnails_.forget(*entry);
+Result<void> SessionHost::delete_upload(UploadStore& uploads, UploadKind kind,
+                                        const std::string& name) {
+  std::optional<CatalogueEntry> scene;
+  if (kind == UploadKind::scene) scene = catalogue_.find_in_root(name);
+  // Before the file goes, from which it follows. It is forgotten after that: until then it could
+  // be asked for and rendered again.
+  std::filesystem::path image;
+  if (scene && was_uploaded(kind, *scene)) image = thumbnails_.file_of(*scene);
+  if (const Result<void> removed = uploads.remove(kind, name); !removed) return removed;
+  if (!image.empty()) thumbnails_.forget(image);
+  if (kind == UploadKind::environment) environments_.forget_thumbnail(name);
+  uploads_changed({.kind = kind, .name = name, .deleted = true});
+  return {};
 }
 
 /// Those of several files are all sent; a newer change of a file replaces one that is queued.
@@ -346,6 +361,9 @@ void SessionHost::apply_edits(const std::shared_ptr<Session>& session,
   if (!shown) return done(shown.error());
   const auto fit = check_slots(*shown->scene, document);
   if (!fit) return done(fit.error());
+  if (!pending && has_textures(*shown->scene, document)) {
+    return done(session->scene().apply_edits(document, by));
+  }
   const auto textures = overrides_of(document, images_);
   if (!textures) return done(textures.error());
   if (*textures == overrides_of(*shown->scene) && !pending) {

@@ -25,13 +25,22 @@ class JobQueue;
 
 namespace heliograph::session {
 
+class UploadStore;
+
+/// Where uploads are, each kind in a root of its own; empty: they are not allowed.
+struct UploadRoots {
+  std::filesystem::path scenes;
+  std::filesystem::path environments;
+  std::filesystem::path images;
+};
+
 struct HostOptions {
   SessionOptions session;  // the main one, and what others start with
   RegistryLimits limits;
   std::vector<std::filesystem::path> scene_roots;
   std::vector<std::filesystem::path> environment_roots;  // beside them
   std::vector<std::filesystem::path> image_roots;        // of textures
-  std::vector<std::filesystem::path> upload_roots;       // those of all these that hold uploads
+  UploadRoots upload_roots;                              // those of all these that hold uploads
   std::optional<std::filesystem::path> environment;      // for every scene, instead of its own
   scene::ImportLimits import_limits;
   std::uint64_t scene_cache_bytes = 1ull << 30;
@@ -68,10 +77,11 @@ class SessionHost {
   /// The images that may take the place of textures; see list_images.
   const SceneCatalogue& images() const { return images_; }
   SceneExporter& exporter() { return exporter_; }
-  /// Whether a file of the catalogues was uploaded, and not put there by others.
-  bool was_uploaded(const CatalogueEntry& entry) const;
-  /// To be called before an upload is deleted: its small image goes with it.
-  void forget_thumbnail(protocol::UploadKind kind, const std::string& name);
+  /// Whether a file of this kind's catalogue was uploaded, and not put there by others.
+  bool was_uploaded(protocol::UploadKind kind, const CatalogueEntry& entry) const;
+  /// Deletes an upload with its small image, and tells all viewers; see UploadStore::remove.
+  protocol::Result<void> delete_upload(UploadStore& uploads, protocol::UploadKind kind,
+                                       const std::string& name);
   /// To be called after an upload or its deletion: memory is freed, and all viewers are told.
   void uploads_changed(const protocol::UploadsChanged& change);
   /// The small image of a scene; see SceneThumbnails::get.

@@ -244,7 +244,8 @@ std::optional<HttpResponse> Router::name_conflict(const UploadAddress& upload) c
   if (upload.kind == session::UploadKind::image) return std::nullopt;  // all were uploaded
   const std::string name(upload.name);
   const bool scene = upload.kind == session::UploadKind::scene;
-  const auto found = scene ? host_.catalogue().find(name) : host_.environments().find(name);
+  const auto found =
+      scene ? host_.catalogue().find_in_root(name) : host_.environments().find_in_root(name);
   const auto& uploads = scene ? options_.uploads : options_.uploaded_environments;
   if (!found || found->root == uploads) return std::nullopt;
   return text_response(

@@ -91,13 +91,9 @@ std::optional<HttpResponse> UploadReceiver::begin(const HttpRequest& request,
 HttpResponse delete_upload(const ServerContext& context, const HttpRequest& request) {
   if (auto refused = change_refusal(context, request, "delete uploads")) return *std::move(refused);
   const UploadAddress address = *upload_address(request.path);
-  const std::string name(address.name);
-  context.host.forget_thumbnail(address.kind, name);
-  const auto removed = context.uploads->remove(address.kind, name);
-  if (removed) {
-    context.host.uploads_changed({.kind = address.kind, .name = name, .deleted = true});
-    return {.status = 204, .content_type = {}};
-  }
+  const auto removed =
+      context.host.delete_upload(*context.uploads, address.kind, std::string(address.name));
+  if (removed) return {.status = 204, .content_type = {}};
   // A file of this name that another has put there stays.
   const bool missing = removed.error().code == protocol::ErrorCode::not_found;
   if (missing && context.router.name_conflict(address)) {

@@ -26,7 +26,9 @@ EnvironmentState describe_environment(SessionHost& host, const Session& session)
   EnvironmentState state = session.scene().environment();
   for (const CatalogueEntry& entry : host.environments().list()) {
     state.environments.push_back(
-        {.name = entry.name, .bytes = entry.bytes, .uploaded = host.was_uploaded(entry)});
+        {.name = entry.name,
+         .bytes = entry.bytes,
+         .uploaded = host.was_uploaded(protocol::UploadKind::environment, entry)});
   }
   return state;
 }

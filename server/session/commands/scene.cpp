@@ -16,8 +16,9 @@ namespace {
 Result<SceneListResult> list_scenes(const SessionHost& host, const Session& session) {
   SceneListResult result;
   for (const CatalogueEntry& entry : host.catalogue().list()) {
-    result.scenes.push_back(
-        {.name = entry.name, .bytes = entry.bytes, .uploaded = host.was_uploaded(entry)});
+    result.scenes.push_back({.name = entry.name,
+                             .bytes = entry.bytes,
+                             .uploaded = host.was_uploaded(protocol::UploadKind::scene, entry)});
   }
   if (const auto info = session.scene().info()) result.current = info->name;
   return result;

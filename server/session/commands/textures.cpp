@@ -8,6 +8,7 @@ namespace heliograph::session {
 namespace methods = protocol::methods;
 
 using protocol::Empty;
+using protocol::UploadKind;
 
 void add_texture_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
   add_command<methods::images_list>(
@@ -15,7 +16,9 @@ void add_texture_commands(protocol::Dispatcher& dispatcher, SessionHost& host) {
       [&host](Session&, const Empty&, const std::string&) -> protocol::Result<protocol::ImageList> {
         protocol::ImageList list;
         for (const CatalogueEntry& entry : list_images(host.images())) {
-          list.images.push_back({.name = entry.name, .bytes = entry.bytes});
+          list.images.push_back({.name = entry.name,
+                                 .bytes = entry.bytes,
+                                 .uploaded = host.was_uploaded(UploadKind::image, entry)});
         }
         return list;
       });

@@ -28,6 +28,14 @@ constexpr std::size_t max_queued_thumbnails = 64;
 constexpr std::size_t max_cached_thumbnails = 512;
 constexpr std::string_view studio_name = "studio";  // unless a file has it
 
+std::vector<std::string> environment_extensions() {
+  return {".hdr", ".exr"};
+}
+
+CatalogueEntry studio() {
+  return {.name = std::string(studio_name), .path = {}, .root = {}};
+}
+
 scene::Environment environment_of(const CatalogueEntry& entry) {
   return entry.path.empty() ? scene::studio_environment() : scene::load_environment(entry.path);
 }
@@ -46,10 +54,10 @@ void EnvironmentLibrary::stop() {
 }
 
 std::vector<CatalogueEntry> EnvironmentLibrary::list() const {
-  std::vector<CatalogueEntry> files = catalogue_.list_files({".hdr", ".exr"});
+  std::vector<CatalogueEntry> files = catalogue_.list_files(environment_extensions());
   const auto at = std::ranges::lower_bound(files, studio_name, {}, &CatalogueEntry::name);
   if (at == files.end() || at->name != studio_name) {
-    files.insert(at, CatalogueEntry{.name = std::string(studio_name), .path = {}, .root = {}});
+    files.insert(at, studio());
   }
   return files;
 }
@@ -63,6 +71,11 @@ Result<CatalogueEntry> EnvironmentLibrary::find(const std::string& name) const {
   }
   return protocol::error::not_found("name",
                                     "is not in the catalogue" + protocol::suggestion(name, names));
+}
+
+std::optional<CatalogueEntry> EnvironmentLibrary::find_in_root(const std::string& name) const {
+  auto file = catalogue_.find_file_in_root(name, environment_extensions());
+  return !file && name == studio_name ? studio() : file;
 }
 
 Result<void> EnvironmentLibrary::load_into(Session& session, const CatalogueEntry& entry,

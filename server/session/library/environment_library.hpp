@@ -28,6 +28,8 @@ class EnvironmentLibrary {
   /// All environments as they are on disk now, by name; the studio has no path.
   std::vector<CatalogueEntry> list() const;
   protocol::Result<CatalogueEntry> find(const std::string& name) const;
+  /// The studio, or one in a root itself; see SceneCatalogue::find_in_root.
+  std::optional<CatalogueEntry> find_in_root(const std::string& name) const;
   /// Sets the environment of the session's scene. `done` is called once, here or on the loading
   /// thread.
   void show(std::shared_ptr<Session> session, const std::string& name, const std::string& by,

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <map>
-#include <optional>
 #include <stdexcept>
 #include <string_view>
 
@@ -16,6 +15,10 @@ namespace fs = std::filesystem;
 // A root that is a whole disk must not block the server.
 constexpr int max_depth = 12;
 constexpr std::size_t max_files_visited = 100'000;
+
+std::vector<std::string> scene_extensions() {
+  return {".glb", ".gltf"};
+}
 
 bool is_inside(const fs::path& path, const fs::path& root) {
   return std::mismatch(root.begin(), root.end(), path.begin(), path.end()).first == root.end();
@@ -73,7 +76,7 @@ SceneCatalogue::SceneCatalogue(const std::vector<fs::path>& roots) {
 }
 
 std::vector<CatalogueEntry> SceneCatalogue::list() const {
-  return list_files({".glb", ".gltf"});
+  return list_files(scene_extensions());
 }
 
 std::vector<CatalogueEntry> SceneCatalogue::list_files(
@@ -96,6 +99,21 @@ protocol::Result<CatalogueEntry> SceneCatalogue::find(const std::string& name) c
   for (const CatalogueEntry& entry : scenes) names.push_back(entry.name);
   return protocol::error::not_found("name",
                                     "is not in the catalogue" + protocol::suggestion(name, names));
+}
+
+std::optional<CatalogueEntry> SceneCatalogue::find_in_root(const std::string& name) const {
+  return find_file_in_root(name, scene_extensions());
+}
+
+std::optional<CatalogueEntry> SceneCatalogue::find_file_in_root(
+    const std::string& name, const std::vector<std::string>& extensions) const {
+  if (name.find('/') != std::string::npos) return std::nullopt;
+  for (const fs::path& root : roots_) {
+    for (const std::string& extension : extensions) {
+      if (auto entry = entry_of(root / (name + extension), root)) return entry;
+    }
+  }
+  return std::nullopt;
 }
 
 }  // namespace heliograph::session

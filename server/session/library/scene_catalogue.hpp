@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,6 +32,12 @@ class SceneCatalogue {
   std::vector<CatalogueEntry> list_files(const std::vector<std::string>& extensions) const;
   /// The scene called `name`; its file's extension may be part of it.
   protocol::Result<CatalogueEntry> find(const std::string& name) const;
+  /// The scene called `name`, without its file's extension, where it is in a root itself and not in
+  /// a folder below. No other file is looked at.
+  std::optional<CatalogueEntry> find_in_root(const std::string& name) const;
+  /// The same of other files, the earlier extension winning.
+  std::optional<CatalogueEntry> find_file_in_root(const std::string& name,
+                                                  const std::vector<std::string>& extensions) const;
 
   const std::vector<std::filesystem::path>& roots() const { return roots_; }
 

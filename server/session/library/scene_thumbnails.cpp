@@ -77,14 +77,12 @@ Result<SceneThumbnails::File> SceneThumbnails::get(const std::string& scene) {
   return protocol::error::not_ready("is rendered when the server has nothing else to do");
 }
 
-void SceneThumbnails::forget(const CatalogueEntry& entry) {
-  const std::filesystem::path file = file_of(entry);
+void SceneThumbnails::forget(const std::filesystem::path& file) {
   std::error_code ignored;
   if (!folder_.empty()) std::filesystem::remove(file, ignored);
   const std::lock_guard lock(mutex_);
   kept_.erase(file);
   failed_.erase(file);
-  std::erase(waiting_, entry.name);
 }
 
 bool SceneThumbnails::has_work() const {
@@ -101,9 +99,18 @@ void SceneThumbnails::render_next() {
     waiting_.pop_front();
   }
   const Result<CatalogueEntry> entry = catalogue_.find(scene);
-  if (!entry) return keep(scene, {}, entry.error());
+  if (!entry) return rendered(scene, {}, entry.error());
   const std::filesystem::path file = file_of(*entry);
-  render_(scene, [this, scene, file](const Result<File>& image) { keep(scene, file, image); });
+  render_(scene, [this, scene, file](const Result<File>& image) { rendered(scene, file, image); });
+}
+
+/// The scene may have been deleted meanwhile, and its image forgotten before it was there.
+void SceneThumbnails::rendered(const std::string& scene, const std::filesystem::path& file,
+                               const Result<File>& image) {
+  keep(scene, file, image);
+  if (!is_current(scene, file)) forget(file);
+  const std::lock_guard lock(mutex_);
+  rendering_.clear();
 }
 
 /// Whether it is the image of the file that the scene has now: it may be gone, or another one.
@@ -116,9 +123,8 @@ bool SceneThumbnails::is_current(const std::string& scene,
 /// What fails for want of room is rendered when it is asked for again.
 void SceneThumbnails::keep(const std::string& scene, const std::filesystem::path& file,
                            const Result<File>& image) {
-  const bool current = is_current(scene, file);
   bool written = false;
-  if (image && current && !folder_.empty()) {
+  if (image && !folder_.empty()) {
     try {
       write_file(file, *image);
       written = true;
@@ -127,8 +133,6 @@ void SceneThumbnails::keep(const std::string& scene, const std::filesystem::path
     }
   }
   const std::lock_guard lock(mutex_);
-  rendering_.clear();
-  if (!current) return;
   if (image && !written) {
     if (kept_.size() >= most_in_memory) kept_.clear();
     kept_[file] = *image;

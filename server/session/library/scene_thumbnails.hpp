@@ -30,18 +30,21 @@ class SceneThumbnails {
   /// The image of a scene, as its file is now. Error not_ready: it is rendered later; not_found:
   /// there is no such scene; invalid: it cannot be loaded.
   protocol::Result<File> get(const std::string& scene);
-  /// Deletes the image of a scene whose file is about to be deleted.
-  void forget(const CatalogueEntry& entry);
+  /// Where the image of a scene is kept: follows from the scene's file as it is now.
+  std::filesystem::path file_of(const CatalogueEntry& entry) const;
+  /// Deletes an image after the file of its scene was deleted. `file`: see file_of.
+  void forget(const std::filesystem::path& file);
   /// Whether images that were asked for are still to be rendered.
   bool has_work() const;
   /// Begins with the next of these, unless one is being rendered.
   void render_next();
 
  private:
-  std::filesystem::path file_of(const CatalogueEntry& entry) const;
   bool is_current(const std::string& scene, const std::filesystem::path& file) const;
   void keep(const std::string& scene, const std::filesystem::path& file,
             const protocol::Result<File>& image);
+  void rendered(const std::string& scene, const std::filesystem::path& file,
+                const protocol::Result<File>& image);
 
   const SceneCatalogue& catalogue_;
   const std::filesystem::path folder_;

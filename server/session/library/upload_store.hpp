@@ -89,8 +89,9 @@ class UploadStore {
   Worker checker_;
 };
 
-/// Whether a file that a catalogue found in a folder of the store is one that `UploadStore::remove`
-/// deletes: none that was put there in other ways, such as one in a folder of its own.
+/// Whether a file that a catalogue found in the store's folder of its kind is one that
+/// `UploadStore::remove` deletes: none that was put there in other ways, such as one in a folder of
+/// its own.
 bool is_upload(const CatalogueEntry& entry);
 
 class UploadStore::Incoming {

@@ -2,52 +2,16 @@
 
 import asyncio
 import base64
-import json
 import os
 import pathlib
-import re
+import shutil
 import tempfile
 import time
-import unittest
 
-from harness.images import decode_png, difference, encode_png
-from harness.server import TIME_FACTOR, Server, ServerTestCase
+from harness.images import decode_png, difference
+from harness.server import TIME_FACTOR, ServerTestCase
+from harness.upload_client import CONTROL, KINDS, RED, SKY, VIEW, UploadClient, mirror, one_node
 from harness.viewer import Viewer
-
-CONTROL, VIEW = "steering-0123456789", "watching-0123456789"
-KINDS = ("scenes", "environments", "images")
-SKY = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4 +X 8\n" + bytes([80, 120, 200, 128]) * 32
-RED = encode_png((255, 0, 0))
-
-
-def mirror():
-    with open(os.path.join(os.environ["HELIOGRAPH_SCENES"], "mirror.glb"), "rb") as file:
-        return file.read()
-
-
-class Client:
-    """Sends and deletes files."""
-
-    def __init__(self, server):
-        self.server = server
-
-    def put(self, kind, name, token=CONTROL):
-        body = {"scenes": mirror(), "environments": SKY, "images": RED}[kind]
-        return self.request("PUT", kind, name, body, token)
-
-    def delete(self, kind, name, token=CONTROL, **headers):
-        return self.request("DELETE", kind, name, None, token, **headers)
-
-    def request(self, method, kind, name, body, token, **headers):
-        status, _, answer = self.server.request(
-            method, f"/api/v1/{kind}/{name}", body, {"Authorization": "Bearer " + token, **headers})
-        return status, answer.decode()
-
-    def entries(self, kind):
-        """What is listed of a kind, by name."""
-        method = {"scenes": "scene.list", "environments": "environment.list",
-                  "images": "images.list"}[kind]
-        return {entry["name"]: entry for entry in self.server.call(method)[kind]}
 
 
 class Deletion(ServerTestCase):
@@ -59,7 +23,7 @@ class Deletion(ServerTestCase):
                          "--view-token", VIEW, "--upload-quota", str(cls.quota))
         super().setUpClass()
         cls.server.headers = {"Authorization": "Bearer " + CONTROL}
-        cls.client = Client(cls.server)
+        cls.client = UploadClient(cls.server)
 
     def setUp(self):
         super().setUp()
@@ -90,11 +54,30 @@ class Deletion(ServerTestCase):
             self.delete(kind, "mine")
 
     def test_lists_tell_what_was_uploaded(self):
-        for kind, given in (("scenes", "mirror"), ("environments", "studio")):
+        for kind, given in (("scenes", "mirror"), ("environments", "studio"), ("images", None)):
             self.put(kind, "mine")
             listed = self.client.entries(kind)
-            self.assertTrue(listed["mine"]["uploaded"])
-            self.assertFalse(listed[given]["uploaded"])
+            self.assertIs(listed["mine"]["uploaded"], True)
+            if given:
+                self.assertIs(listed[given]["uploaded"], False)
+
+    def test_files_in_other_places_of_the_folder_are_not_uploads(self):
+        def place(path, data):
+            file = pathlib.Path(self.folder.name, path)
+            file.parent.mkdir(exist_ok=True)
+            file.write_bytes(data)
+            return file
+        sky = place("scenes/placed.hdr", SKY)
+        self.addCleanup(sky.unlink)
+        bricks = place("images/more/bricks.png", RED)
+        self.addCleanup(shutil.rmtree, bricks.parent)
+        self.assertIs(self.client.entries("environments")["placed"]["uploaded"], False)
+        self.assertEqual(self.client.delete("environments", "placed")[0], 409)
+        self.assertTrue(sky.exists())
+        self.assertIs(self.client.entries("images")["more/bricks"]["uploaded"], False)
+        self.assertEqual(self.client.delete("images", "more/bricks")[0], 400)
+        self.assertEqual(self.client.delete("images", "bricks")[0], 404)
+        self.assertTrue(bricks.exists())
 
     def test_files_of_scene_roots_are_not_deleted(self):
         roots = os.environ["HELIOGRAPH_SCENES"]
@@ -212,9 +195,32 @@ class Deletion(ServerTestCase):
         answer = self.server.ask("textures.set", {**slot, "image": "mine"})
         self.assert_error(answer, -32004, path="image")
         document = self.server.call("edits.get")["edits"]
+        self.server.call("materials.patch", {"material": material, "patch": {"roughness": 0.25}})
+        applied = self.server.call("edits.apply", {"edits": document})
+        self.assertEqual(applied["edits"], document, "what is shown needs no file")
+        self.assertEqual(self.server.call("edits.get")["edits"]["textures"],
+                         [{**slot, "image": "mine"}])
+        others = [*document["textures"], {**slot, "slot": "normal", "image": None}]
+        answer = self.server.ask("edits.apply", {"edits": {**document, "textures": others}})
+        self.assert_error(answer, -32004, path="edits.textures[0].image")
         answer = self.server.ask("scene.load", {"name": "mirror", "edits": document})
         self.assert_error(answer, -32004, path="edits.textures[0].image")
         self.server.call("textures.set", {**slot, "image": None})
+
+    def test_textures_of_a_scene_whose_file_is_another_now_are_refused(self):
+        self.put("scenes", "mine")
+        self.server.call("scene.load", {"name": "mine"})
+        nodes = self.server.call("nodes.list")["nodes"]
+        self.server.call("selection.set", {"nodes": [node["id"] for node in nodes]})
+        slot = {"material": self.server.call("materials.list")["materials"][0]["name"],
+                "slot": "base_color", "removed": True}
+        self.delete("scenes", "mine")
+        self.assertEqual(self.client.request("PUT", "scenes", "mine", one_node(slot["material"]),
+                                             CONTROL)[0], 201)
+        answer = self.server.ask("textures.set", slot)
+        self.assert_error(answer, -32009, path="scene")
+        self.assertEqual(len(self.server.call("nodes.list")["nodes"]), len(nodes))
+        self.server.call("scene.load", {"name": "mirror"})
 
     async def test_viewers_of_all_sessions_are_told(self):
         self.server.call("session.create", {"name": "other"})
@@ -246,107 +252,11 @@ class Deletion(ServerTestCase):
                 if message["method"] == "uploads.changed"]
 
 
-class Belongings(unittest.TestCase):
-    """What the server has made of an upload, and jobs that name it."""
-
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def start(self, *arguments):
-        server = Server("--scene", "mirror", "--uploads", str(self.folder / "uploads"), *arguments,
-                        environment={"XDG_CACHE_HOME": str(self.folder / "cache")})
-        self.addCleanup(server.stop)
-        return server
-
-    def wait(self, condition, what, timeout=60):
-        deadline = time.monotonic() + timeout * TIME_FACTOR
-        while not condition():
-            self.assertLess(time.monotonic(), deadline, what)
-            time.sleep(0.1)
-
-    def test_the_small_image_of_a_scene_goes_with_it(self):
-        server = self.start()
-        client = Client(server)
-        self.assertEqual(client.put("scenes", "mine")[0], 201)
-        address = "/api/v1/scenes/mine/thumbnail.jpg"
-        self.wait(lambda: server.get(address)[0] == 200, "the thumbnail did not come")
-        images = (self.folder / "cache").rglob
-        self.assertEqual(len(list(images("*.jpg"))), 1)
-        self.assertEqual(client.delete("scenes", "mine")[0], 204)
-        self.assertEqual(server.get(address)[0], 404)
-        self.assertEqual(list(images("*.jpg")), [])
-
-    def test_memory_of_a_deleted_scene_is_freed_when_no_session_shows_it(self):
-        server = self.start()
-        client = Client(server)
-
-        def in_memory():
-            text = server.get("/metrics")[2].decode()
-            return int(re.search(r"^heliograph_scene_cache_entries (\d+)", text, re.MULTILINE)[1])
-        self.assertEqual(client.put("scenes", "mine")[0], 201)
-        server.call("scene.load", {"name": "mine"})
-        self.assertEqual(in_memory(), 2)
-        self.assertEqual(client.delete("scenes", "mine")[0], 204)
-        self.assertEqual(in_memory(), 2, "it is shown")
-        server.call("scene.load", {"name": "mirror"})
-        self.wait(lambda: in_memory() == 1, "a scene that no session shows stays")
-        self.assertEqual(client.put("scenes", "mine")[0], 201)
-        for name in ("mine", "mirror"):
-            server.call("scene.load", {"name": name})
-        self.assertEqual(in_memory(), 2, "kept for the next load")
-        self.assertEqual(client.delete("scenes", "mine")[0], 204)
-        self.wait(lambda: in_memory() == 1, "a scene that no session shows stays")
-
-    def test_a_job_finds_uploads_until_they_are_deleted(self):
-        server = self.start("--jobs", str(self.folder / "jobs"))
-        client = Client(server)
-        for kind in ("scenes", "environments"):
-            self.assertEqual(client.put(kind, "mine")[0], 201)
-        entry = {"scene": "mine", "environment": "mine", "width": 48, "samples": 1}
-        job = server.call("job.create", {"entries": [entry]})["job"]
-
-        def state():
-            return server.call("job.status", {"job": job})["state"]
-        self.wait(lambda: state() not in ("queued", "running"), "the job does not end")
-        self.assertEqual(state(), "done")
-        self.assertEqual(client.delete("environments", "mine")[0], 204)
-        answer = server.ask("job.create", {"entries": [entry]})
-        self.assertEqual(answer["error"]["data"]["path"], "entries[0].environment")
-
-    def test_an_entry_of_a_job_whose_scene_was_deleted_fails_alone(self):
-        server = self.start("--jobs", str(self.folder / "jobs"))
-        client = Client(server)
-        self.assertEqual(client.put("scenes", "mine")[0], 201)
-        slow = server.call("job.create", {"entries": [
-            {"scene": "mirror", "width": 512, "samples": 65536,
-             "settings": {"accumulation": {"max_samples": 65536}}}]})
-        waiting = server.call("job.create", {"entries": [
-            {"scene": name, "width": 48, "samples": 1, "output": name + ".png"}
-            for name in ("mine", "mirror")]})
-        self.assertEqual(client.delete("scenes", "mine")[0], 204)
-        answer = server.ask("job.create", {"entries": [{"scene": "mine"}]})
-        self.assertEqual(answer["error"]["data"]["path"], "entries[0].scene")
-        server.call("job.cancel", {"job": slow["job"]})
-
-        def status():
-            return server.call("job.status", {"job": waiting["job"]})
-        self.wait(lambda: status()["state"] not in ("queued", "running"), "the job does not end")
-        ended = status()
-        self.assertEqual(ended["state"], "partial")
-        self.assertEqual([file["name"] for file in ended["files"]], ["mirror.png"])
-        self.assertEqual([(failure["entry"], failure["scene"], failure["reason"])
-                          for failure in ended["failures"]],
-                         [(1, "mine", "the file does not exist")])
-        self.assertNotIn(str(self.folder), json.dumps(ended))
-
-
 class NoUploads(ServerTestCase):
     def setUp(self):
         pass
 
     def test_have_nothing_to_delete(self):
         for kind in KINDS:
-            self.assertEqual(Client(self.server).delete(kind, "mirror")[0], 405)
+            self.assertEqual(UploadClient(self.server).delete(kind, "mirror")[0], 405)
         self.assertTrue(os.path.exists(os.path.join(os.environ["HELIOGRAPH_SCENES"], "mirror.glb")))

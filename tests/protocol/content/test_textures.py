@@ -66,8 +66,8 @@ class Textures(ServerTestCase):
 
     def test_an_uploaded_image_takes_the_place_of_a_texture(self):
         images = self.server.call("images.list")["images"]
-        self.assertEqual(images, [{"name": "green", "bytes": len(GREEN)},
-                                  {"name": "red", "bytes": len(RED)}])
+        self.assertEqual(images, [{"name": "green", "bytes": len(GREEN), "uploaded": True},
+                                  {"name": "red", "bytes": len(RED), "uploaded": True}])
         before = self.image()
         self.server.call("camera.set", {"eye": [0, 1, 4], "target": [0, 0, 0]})
         camera = self.server.call("camera.get")

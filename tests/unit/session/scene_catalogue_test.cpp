@@ -67,6 +67,28 @@ TEST(SceneCatalogue, NamesCannotEscapeTheRoots) {
   EXPECT_EQ(catalogue.find("../outside/secret").error().code, protocol::ErrorCode::not_found);
 }
 
+TEST(SceneCatalogue, AFileOfARootItselfIsFoundByItsName) {
+  TemporaryFolder folder;
+  folder.write("first/box.gltf");
+  folder.write("first/more/ball.glb");
+  folder.write("first/sky.exr");
+  folder.write("second/box.glb", "12345");
+  folder.write("second/cone.gltf");
+  folder.write("second/cone.glb");
+  const SceneCatalogue catalogue({folder.path() / "first", folder.path() / "second"});
+  for (const char* name : {"box", "cone"}) {
+    const auto found = catalogue.find_in_root(name);
+    ASSERT_TRUE(found) << name;
+    EXPECT_EQ(found->name, name);
+    EXPECT_EQ(found->path, catalogue.find(name)->path) << "of the same precedence";
+    EXPECT_EQ(found->root, catalogue.find(name)->root);
+  }
+  for (const char* name : {"ball", "more/ball", "sky", "box.gltf", "", "..", "../second/box"}) {
+    EXPECT_FALSE(catalogue.find_in_root(name)) << name;
+  }
+  EXPECT_TRUE(catalogue.find_file_in_root("sky", {".hdr", ".exr"}));
+}
+
 TEST(SceneCatalogue, SymbolicLinksCannotEscapeTheRoots) {
   TemporaryFolder folder;
   folder.write("outside/secret.glb");

@@ -24,6 +24,7 @@ class SceneThumbnailsTest : public testing::TestWithParam<bool> {
   }
   /// The error of get; ok: there is an image.
   bool has_image() { return static_cast<bool>(thumbnails_.get("box")); }
+  fs::path image_file() const { return thumbnails_.file_of(*catalogue_.find("box")); }
 
   test::TemporaryFolder folder_;
   fs::path box_;
@@ -39,7 +40,7 @@ TEST_P(SceneThumbnailsTest, TheImageOfADeletedSceneIsGone) {
   thumbnails_.render_next();
   rendered_(an_image);
   EXPECT_TRUE(has_image());
-  thumbnails_.forget(*catalogue_.find("box"));
+  thumbnails_.forget(image_file());
   EXPECT_EQ(files_kept(), 0);
   EXPECT_FALSE(has_image()) << "the file is still there: it is rendered again";
   EXPECT_TRUE(thumbnails_.has_work());
@@ -48,18 +49,36 @@ TEST_P(SceneThumbnailsTest, TheImageOfADeletedSceneIsGone) {
 TEST_P(SceneThumbnailsTest, AnImageThatWaitsIsNotRenderedForADeletedScene) {
   EXPECT_FALSE(has_image());
   EXPECT_TRUE(thumbnails_.has_work());
-  thumbnails_.forget(*catalogue_.find("box"));
+  const fs::path file = image_file();
+  fs::remove(box_);
+  thumbnails_.forget(file);
+  thumbnails_.render_next();
+  EXPECT_FALSE(rendered_);
   EXPECT_FALSE(thumbnails_.has_work());
+}
+
+TEST_P(SceneThumbnailsTest, AFailureOfADeletedSceneIsForgotten) {
+  EXPECT_FALSE(has_image());
+  thumbnails_.render_next();
+  rendered_(protocol::error::invalid("name", "cannot be loaded"));
+  EXPECT_EQ(thumbnails_.get("box").error().code, protocol::ErrorCode::invalid_params);
+  thumbnails_.forget(image_file());
+  EXPECT_EQ(thumbnails_.get("box").error().code, protocol::ErrorCode::not_ready);
 }
 
 TEST_P(SceneThumbnailsTest, AnImageThatIsRenderedWhileItsSceneIsDeletedIsNotKept) {
   EXPECT_FALSE(has_image());
   thumbnails_.render_next();
-  thumbnails_.forget(*catalogue_.find("box"));
+  const fs::path file = image_file();
+  const fs::file_time_type modified = fs::last_write_time(box_);
   fs::remove(box_);
+  thumbnails_.forget(file);
   rendered_(an_image);
   EXPECT_EQ(files_kept(), 0);
-  folder_.write("scenes/box.glb", "another");
+  // The same file again would have the same image.
+  folder_.write("scenes/box.glb");
+  fs::last_write_time(box_, modified);
+  ASSERT_EQ(image_file(), file);
   EXPECT_FALSE(has_image());
   thumbnails_.render_next();
   rendered_(an_image);
