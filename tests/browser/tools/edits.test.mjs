@@ -35,7 +35,8 @@ stage.test("keys add a light, give it a temperature and remove it; undo covers a
   await temperature.press("Enter");
   await eventually(async () => (await added()).temperature === 2700, "its temperature");
   assert.ok((await added()).color[2] < 0.3, "a warm colour");
-  assert.notEqual(await section.locator("input[name=light_colour]").inputValue(), "#ffffff");
+  const colour = section.locator("input[name=light_colour]");
+  await eventually(async () => (await colour.inputValue()) !== "#ffffff", "the colour shown");
   await screenshot(page, "added_light");
   const undo = async () => {
     await page.locator("#view").focus();

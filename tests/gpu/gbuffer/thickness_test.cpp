@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <cstring>
 #include <glm/gtc/matrix_transform.hpp>
+#include <iostream>
 #include <stdexcept>
 
 #include "render/passes/gbuffer/draw_gbuffer.hpp"
@@ -58,9 +60,17 @@ glm::vec3 seen_tint(Way way, float modelled, float placed) {
   return root * root;
 }
 
+/// The software device of Debian 12's Mesa (22.3) ends the process when it rasterises to eight
+/// images, where kernels draw otherwise; that of newer_mesa.sh does not.
+bool can_rasterise() {
+  return !has_host_kernels() || std::getenv("HELIOGRAPH_TEST_ALL_TRACERS") != nullptr;
+}
+
 TEST(Thickness, GrowsWithTheScaleOfTheInstance) {
+  if (!can_rasterise()) std::cout << "the rasteriser is left out: Mesa's may end the process\n";
   for (const Way way : {Way::raster, Way::ray_shaders, Way::ray_kernels, Way::drawing_kernels}) {
     if (way >= Way::ray_kernels && !has_host_kernels()) continue;
+    if (way == Way::raster && !can_rasterise()) continue;
     const auto expect_tint = [&](float modelled, float placed) {
       const glm::vec3 tint = seen_tint(way, modelled, placed);
       for (int c = 0; c < 3; ++c) {
