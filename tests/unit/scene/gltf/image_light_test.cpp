@@ -264,7 +264,7 @@ TEST(ImageLight, FacesThatCannotBeReadAreBlack) {
   GltfBuilder missing = six_colors();
   missing.json["images"][2] = {{"uri", "missing.png"}};
   Bytes cut = plain_face(4, face_colors[2]);
-  cut.resize(cut.size() - 20);
+  cut.erase(cut.end() - 20, cut.end());
   std::array<Bytes, 6> files;
   for (std::size_t i = 0; i < 6; ++i) files[i] = plain_face(4, face_colors[i]);
   files[2] = cut;
