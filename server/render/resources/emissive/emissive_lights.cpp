@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <span>
 
 namespace heliograph::render {
 namespace {
@@ -15,8 +16,7 @@ std::size_t table_bytes(std::size_t entries) {
 
 void copy_table(const EmissiveTable& table, std::byte* to) {
   std::memcpy(to, &table.header, sizeof table.header);
-  std::memcpy(to + sizeof table.header, table.triangles.data(),
-              table.triangles.size() * sizeof(shared::EmissiveTriangle));
+  std::ranges::copy(std::as_bytes(std::span(table.triangles)), to + sizeof table.header);
 }
 
 }  // namespace

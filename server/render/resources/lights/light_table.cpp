@@ -1,7 +1,6 @@
 #include "render/resources/lights/light_table.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <numeric>
 
 namespace heliograph::render {
@@ -40,7 +39,7 @@ gpu::Buffer make_light_table(const gpu::Device& device, std::span<const shared::
 
 void write_lights(const gpu::Buffer& table, std::span<const shared::Light> lights,
                   const scene::Bounds& bounds) {
-  std::memcpy(table.mapped(), lights.data(), lights.size_bytes());
+  std::ranges::copy(std::as_bytes(lights), table.mapped());  // none has no address
   if (!needs_light_grid(lights)) return;
   write_light_grid(lights, bounds, table.mapped(), first_grid_texel(lights.size()));
 }
