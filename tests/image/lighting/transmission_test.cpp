@@ -33,15 +33,7 @@ MaterialLayers volume(float thickness) {
 /// Around the origin; `half`: its half extents.
 std::uint32_t add_box(SceneBuilder& builder, const glm::vec3& half,
                       const shared::Material& material) {
-  const float x = half.x, y = half.y, z = half.z;
-  const std::array<std::array<glm::vec3, 4>, 6> sides{
-      {{{{-x, -y, z}, {x, -y, z}, {x, y, z}, {-x, y, z}}},
-       {{{x, -y, -z}, {-x, -y, -z}, {-x, y, -z}, {x, y, -z}}},
-       {{{x, -y, z}, {x, -y, -z}, {x, y, -z}, {x, y, z}}},
-       {{{-x, -y, -z}, {-x, -y, z}, {-x, y, z}, {-x, y, -z}}},
-       {{{-x, y, z}, {x, y, z}, {x, y, -z}, {-x, y, -z}}},
-       {{{-x, -y, -z}, {x, -y, -z}, {x, -y, z}, {-x, -y, z}}}}};
-  return builder.add_quads(sides, material);
+  return builder.add_quads(box_sides(half), material);
 }
 
 /// A slab of glass, turned by 45 degrees about Y, before a wall that is black where x < 0 and

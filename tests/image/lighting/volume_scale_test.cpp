@@ -35,14 +35,7 @@ enum class Form { box, pane };
 /// its volume one metre thick; `placed`: the instance's scale.
 std::shared_ptr<scene::Scene> volume_scene(Form form, float modelled, float placed, bool diffuse) {
   SceneBuilder builder;
-  const float x = 1.0f / modelled, y = x, z = x;
-  const std::array<std::array<glm::vec3, 4>, 6> sides{
-      {{{{-x, -y, z}, {x, -y, z}, {x, y, z}, {-x, y, z}}},
-       {{{x, -y, -z}, {-x, -y, -z}, {-x, y, -z}, {x, y, -z}}},
-       {{{x, -y, z}, {x, -y, -z}, {x, y, -z}, {x, y, z}}},
-       {{{-x, -y, -z}, {-x, -y, z}, {-x, y, z}, {-x, y, -z}}},
-       {{{-x, y, z}, {x, y, z}, {x, y, -z}, {-x, y, -z}}},
-       {{{-x, -y, -z}, {x, -y, -z}, {x, -y, z}, {-x, -y, z}}}}};
+  const auto sides = box_sides(glm::vec3(1.0f / modelled));
   const std::span<const std::array<glm::vec3, 4>> shown(sides.data(), form == Form::box ? 6 : 1);
   const auto material =
       builder.with_layers(surface(glm::vec3(1.0f), 0.0f), tinted_volume(modelled, diffuse));

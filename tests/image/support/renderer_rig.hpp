@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <string>
 
@@ -75,6 +76,17 @@ inline glm::dvec3 mean_color(RendererRig& rig, const protocol::Settings& setting
 inline glm::vec3 rgb(const render::FloatImage& image, std::uint32_t x, std::uint32_t y) {
   const float* values = &image.rgba[(std::size_t{y} * image.width + x) * 4];
   return {values[0], values[1], values[2]};
+}
+
+/// Around the origin; `half`: its half extents. The first side is the one toward +Z.
+inline std::array<std::array<glm::vec3, 4>, 6> box_sides(const glm::vec3& half) {
+  const float x = half.x, y = half.y, z = half.z;
+  return {{{{{-x, -y, z}, {x, -y, z}, {x, y, z}, {-x, y, z}}},
+           {{{x, -y, -z}, {-x, -y, -z}, {-x, y, -z}, {x, y, -z}}},
+           {{{x, -y, z}, {x, -y, -z}, {x, y, -z}, {x, y, z}}},
+           {{{-x, -y, -z}, {-x, -y, z}, {-x, y, z}, {-x, y, -z}}},
+           {{{-x, y, z}, {x, y, z}, {x, y, -z}, {-x, y, -z}}},
+           {{{-x, -y, -z}, {x, -y, -z}, {x, -y, z}, {-x, -y, z}}}}};
 }
 
 }  // namespace heliograph::test
