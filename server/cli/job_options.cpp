@@ -87,11 +87,9 @@ bool deliver(const jobs::QueueOptions::Delivery& delivery) {
 std::unique_ptr<jobs::JobQueue> make_job_queue(const ServeOptions& options,
                                                const session::HostOptions& hosting) {
   if (options.jobs.empty()) return nullptr;
-  std::vector<fs::path> environment_roots = hosting.scene_roots;
-  environment_roots.insert(environment_roots.end(), hosting.environment_roots.begin(),
-                           hosting.environment_roots.end());
   const auto scenes = std::make_shared<session::SceneCatalogue>(hosting.scene_roots);
-  const auto environments = std::make_shared<session::SceneCatalogue>(std::move(environment_roots));
+  const auto environments =
+      std::make_shared<session::SceneCatalogue>(hosting.all_environment_roots());
   jobs::QueueOptions queue{
       .folder = fs::absolute(options.jobs),
       .quota = options.job_quota,

@@ -38,13 +38,6 @@ protocol::Error renamed(const protocol::Error& part, std::string_view path, std:
   return protocol::error::make(part.code, std::move(name), part.reason, part.limit);
 }
 
-using Paths = std::vector<std::filesystem::path>;
-
-Paths with(Paths paths, const Paths& more) {
-  paths.insert(paths.end(), more.begin(), more.end());
-  return paths;
-}
-
 const std::filesystem::path& root_of(const UploadRoots& roots, UploadKind kind) {
   if (kind == UploadKind::scene) return roots.scenes;
   return kind == UploadKind::environment ? roots.environments : roots.images;
@@ -73,6 +66,12 @@ Result<void> may_change(const Session& session, const protocol::MethodDescriptor
 
 }  // namespace
 
+std::vector<std::filesystem::path> HostOptions::all_environment_roots() const {
+  std::vector<std::filesystem::path> roots = scene_roots;
+  roots.insert(roots.end(), environment_roots.begin(), environment_roots.end());
+  return roots;
+}
+
 SessionHost::SessionHost(const render::Engines& engines, HostOptions options)
     : options_(std::move(options)),
       catalogue_(options_.scene_roots),
@@ -89,8 +88,7 @@ SessionHost::SessionHost(const render::Engines& engines, HostOptions options)
               {.environment = options_.environment,
                .limits = options_.import_limits,
                .cache_bytes = options_.scene_cache_bytes}),
-      environments_(devices_,
-                    SceneCatalogue(with(options_.scene_roots, options_.environment_roots))),
+      environments_(devices_, SceneCatalogue(options_.all_environment_roots())),
       thumbnails_(catalogue_, options_.thumbnail_folder,
                   [this](const std::string& scene, SceneThumbnails::Rendered done) {
                     render_thumbnail(scene, std::move(done));

@@ -53,6 +53,9 @@ struct HostOptions {
   std::chrono::seconds release_after{120};
   /// Jobs beside the sessions; null: none. Must outlive the host's use, up to stop().
   jobs::JobQueue* jobs = nullptr;
+
+  /// Where environments are looked for, in this order.
+  std::vector<std::filesystem::path> all_environment_roots() const;
 };
 
 /// Everything of the server but its sockets: the sessions, what renders them and loads their
