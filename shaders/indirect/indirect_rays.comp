@@ -1,6 +1,6 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 16, local_size_y = 16) in;
 // One ray per pixel that gathers what comes from the environment and from other surfaces: in
 // proportion to the cosine and to what the path guide has learnt. It leaves to the other side of a
 // surface that scatters light through in proportion to what comes from there.
@@ -8,6 +8,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/lighting/two_sided_light.glsl"
 #include "lib/math/octahedral.glsl"
 #include "lib/math/random.glsl"
+#include "lib/rays/gathered_pixels.glsl"
 #include "lib/rays/ray_stream.glsl"
 #include "lib/rays/sampling_plan.glsl"
 #include "lib/math/geometry.glsl"
@@ -50,14 +51,21 @@ uint choose_side(ivec2 pixel, inout vec3 shading, inout vec3 geometric, out floa
   return pack_side_share(behind ? shares.behind : shares.near);
 }
 
+bool wants_ray(ivec2 pixel) {
+  if (outside_frame(pixel)) return false;
+  bool seen = imageLoad(motion, pixel).w > 0.0;
+  bool left_out = seen && by_plan != 0u && (imageLoad(planned, pixel).r & plan_ambient) == 0u;
+  imageStore(radiance, pixel, vec4(0.0, 0.0, 0.0, left_out ? no_sample : 1.0));
+  return seen && !left_out;
+}
+
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  bool requested = false;
+  gather_pixel(wants_ray(ivec2(gl_GlobalInvocationID.xy)), ivec2(gl_GlobalInvocationID.xy));
+  bool requested = has_gathered_pixel();
   Ray ray;
-  float view_z = outside_frame(pixel) ? 0.0 : imageLoad(motion, pixel).w;
-  bool left_out = view_z > 0.0 && by_plan != 0u &&
-                  (imageLoad(planned, pixel).r & plan_ambient) == 0u;
-  if (view_z > 0.0 && !left_out) {
+  if (requested) {
+    ivec2 pixel = gathered_pixel();
+    float view_z = imageLoad(motion, pixel).w;
     vec4 encoded = imageLoad(normals, pixel);
     vec3 shading = octahedral_decode(encoded.xy);
     vec3 geometric = octahedral_decode(encoded.zw);
@@ -78,10 +86,6 @@ void main() {
     ray.padding0 = floatBitsToUint(pair.weight * side_weight);
     // The density without a guide.
     ray.padding1 = floatBitsToUint(max(dot(ray.direction, shading), 0.0) / pi);
-    requested = true;
-  }
-  if (!outside_frame(pixel)) {
-    imageStore(radiance, pixel, vec4(0.0, 0.0, 0.0, left_out ? no_sample : 1.0));
   }
   APPEND_RAY(requested, ray)
 }

@@ -39,15 +39,29 @@ struct RayCount {
   uint groups_z;
   uint blending;  // 0: blended surfaces stop every ray; else a number of this frame, with which
                   // they stop a random fraction of them, equal to their coverage
-  uint padding0;
-  uint padding1;
-  uint padding2;
+  uint tracing_groups_x;  // VkDispatchIndirectCommand of passes that walk the hierarchy
+  uint tracing_groups_y;
+  uint tracing_groups_z;
 };
 
 // No device starts more than 65,535 groups in a row: longer streams take several rows.
 SHARED_CONSTANT uint rays_per_group = 64u;
 SHARED_CONSTANT uint groups_per_row = 32768u;
 SHARED_CONSTANT uint rays_per_row = 2097152u;
+
+// Few rays are spread over more groups of at least so many, up to a number of groups that fills a
+// large device once: a group takes as long as all the ways that its rays go, and the pass as long
+// as its slowest group.
+SHARED_CONSTANT uint least_rays_per_group = 8u;
+SHARED_CONSTANT uint spread_groups = 2048u;
+
+// How many groups walk the hierarchy for so many rays. Grows with them.
+SHARED_FUNCTION uint tracing_groups(uint rays) {
+  uint full = (rays + rays_per_group - 1u) / rays_per_group;
+  uint sparse = (rays + least_rays_per_group - 1u) / least_rays_per_group;
+  uint spread = sparse < spread_groups ? sparse : spread_groups;
+  return full > spread ? full : spread;
+}
 
 SHARED_END
 #endif

@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 layout(set = 1, binding = 5, std430) writeonly buffer Occluded { uint occluded[]; };
 
 void main() {
-  const uint index = ray_index();
-  if (index >= ray_count.count) return;
+  const uint index = traced_ray(ray_count.count);
+  if (index == not_traced) return;
   occluded[index] = trace(rays[index]).instance != hit_none ? 1u : 0u;
 }

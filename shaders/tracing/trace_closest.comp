@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 layout(set = 1, binding = 5, std430) writeonly buffer Hits { StoredHit hits[]; };
 
 void main() {
-  const uint index = ray_index();
-  if (index >= ray_count.count) return;
+  const uint index = traced_ray(ray_count.count);
+  if (index == not_traced) return;
   hits[index] = stored(trace(rays[index]));
 }

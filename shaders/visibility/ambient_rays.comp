@@ -1,10 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 16, local_size_y = 16) in;
 // One cosine-distributed ray per pixel that asks whether the environment is hidden nearby.
 #include "lib/frame.glsl"
 #include "lib/math/octahedral.glsl"
 #include "lib/math/random.glsl"
+#include "lib/rays/gathered_pixels.glsl"
 #include "lib/rays/ray_stream.glsl"
 #include "lib/rays/sampling_plan.glsl"
 #include "lib/math/geometry.glsl"
@@ -17,14 +18,25 @@ layout(set = 1, binding = 4, r32ui) readonly uniform uimage2D planned;  // or an
 layout(set = 1, binding = 5, r32f) writeonly uniform image2D visibility;
 layout(push_constant) uniform Constants { uint by_plan; };
 
+/// What a pixel's visibility is before its ray was traced.
+void leave(ivec2 pixel, float visible) { imageStore(visibility, pixel, vec4(visible)); }
+
+bool wants_ray(ivec2 pixel) {
+  if (outside_frame(pixel)) return false;
+  bool seen = imageLoad(motion, pixel).w > 0.0;
+  bool left_out = seen && by_plan != 0u && (imageLoad(planned, pixel).r & plan_ambient) == 0u;
+  if (seen && !left_out) return true;
+  leave(pixel, left_out ? no_sample : 1.0);
+  return false;
+}
+
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  gather_pixel(wants_ray(ivec2(gl_GlobalInvocationID.xy)), ivec2(gl_GlobalInvocationID.xy));
   bool requested = false;
   Ray ray;
-  float view_z = outside_frame(pixel) ? 0.0 : imageLoad(motion, pixel).w;
-  bool left_out = view_z > 0.0 && by_plan != 0u &&
-                  (imageLoad(planned, pixel).r & plan_ambient) == 0u;
-  if (view_z > 0.0 && !left_out) {
+  if (has_gathered_pixel()) {
+    ivec2 pixel = gathered_pixel();
+    float view_z = imageLoad(motion, pixel).w;
     vec4 encoded = imageLoad(normals, pixel);
     vec3 shading = octahedral_decode(encoded.xy);
     vec3 geometric = octahedral_decode(encoded.zw);
@@ -38,9 +50,8 @@ void main() {
     ray.padding0 = 0u;
     ray.padding1 = 0u;
     requested = dot(ray.direction, geometric) > 0.0;
+    // Directions below the surface are hidden by it.
+    leave(pixel, requested ? 1.0 : 0.0);
   }
-  // Directions below the surface are hidden by it.
-  float visible = left_out ? no_sample : requested || view_z <= 0.0 ? 1.0 : 0.0;
-  if (!outside_frame(pixel)) imageStore(visibility, pixel, vec4(visible));
   APPEND_RAY(requested, ray)
 }

@@ -1,11 +1,12 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 16, local_size_y = 16) in;
 // One shadow ray per pixel toward one light, chosen in proportion to what the surface sends to the
 // eye of its unshadowed light, so that the expected visibility is the ratio sum(L V) / sum(L)
 // (Heitz et al. 2018).
 #include "lib/lighting/light_choice.glsl"
 #include "lib/math/random.glsl"
+#include "lib/rays/gathered_pixels.glsl"
 #include "lib/rays/ray_stream.glsl"
 #include "lib/rays/sampling_plan.glsl"
 
@@ -22,14 +23,25 @@ layout(push_constant) uniform Constants { uint by_plan; };
 
 #include "lib/scene/gbuffer_material.glsl"
 
+/// What a pixel's visibility is before its ray was traced.
+void leave(ivec2 pixel, float visible) { imageStore(visibility, pixel, vec4(visible)); }
+
+bool wants_ray(ivec2 pixel) {
+  if (outside_frame(pixel)) return false;
+  bool seen = imageLoad(motion, pixel).w > 0.0;
+  bool left_out = seen && by_plan != 0u && (imageLoad(planned, pixel).r & plan_shadows) == 0u;
+  if (seen && !left_out) return true;
+  leave(pixel, left_out ? no_sample : 0.0);
+  return false;
+}
+
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  gather_pixel(wants_ray(ivec2(gl_GlobalInvocationID.xy)), ivec2(gl_GlobalInvocationID.xy));
   bool requested = false;
   Ray ray;
-  float view_z = outside_frame(pixel) ? 0.0 : imageLoad(motion, pixel).w;
-  bool left_out = view_z > 0.0 && by_plan != 0u &&
-                  (imageLoad(planned, pixel).r & plan_shadows) == 0u;
-  if (view_z > 0.0 && !left_out) {
+  if (has_gathered_pixel()) {
+    ivec2 pixel = gathered_pixel();
+    float view_z = imageLoad(motion, pixel).w;
     SurfaceMaterial m = material_at(pixel);
     vec3 position = world_position(pixel, view_z);
     float pick = random_number(uvec2(pixel), frame.sample_index, 1u, frame.seed);
@@ -42,8 +54,7 @@ void main() {
       ray = light_ray(light_number(choice.number), m, position, view_z, u, pick, requested);
       ray.pixel = uint(pixel.x) | uint(pixel.y) << 16u;
     }
+    leave(pixel, requested ? 1.0 : 0.0);
   }
-  float visible = left_out ? no_sample : requested ? 1.0 : 0.0;
-  if (!outside_frame(pixel)) imageStore(visibility, pixel, vec4(visible));
   APPEND_RAY(requested, ray)
 }

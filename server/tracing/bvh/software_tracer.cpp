@@ -190,7 +190,7 @@ class SoftwareTracer : public StoppableTracer {
         .read(plan.import(tables.alpha_heap))
         .write(results)
         .constants([&bvh] { return bvh.root(); })
-        .dispatch_indirect(rays.count, offsetof(shared::RayCount, groups_x));
+        .dispatch_indirect(rays.count, offsetof(shared::RayCount, tracing_groups_x));
   }
 
   const gpu::Device& device_;

@@ -5,6 +5,7 @@
 #define HELIOGRAPH_SPECULAR_GENERATION_GLSL
 #include "lib/frame.glsl"
 #include "lib/denoise/moments.glsl"
+#include "lib/rays/gathered_pixels.glsl"
 #include "lib/rays/ray_stream.glsl"
 #include "lib/math/sampling.glsl"
 #include "lib/rays/sampling_plan.glsl"
@@ -32,26 +33,45 @@ layout(push_constant) uniform Constants {
 
 #include "lib/scene/gbuffer_material.glsl"
 
+uint planned_word(ivec2 pixel) {
+  return by_plan != 0u ? imageLoad(planned, pixel).r : plan_specular;
+}
+
+/// `seen`: radiance and distance; `taken`: direction and density.
+void leave(ivec2 cell, vec4 seen, vec4 taken) {
+  imageStore(radiance, cell, seen);
+#ifdef HALF_RESOLUTION
+  imageStore(directions, cell, taken);
+#endif
+}
+
+bool wants_sample(ivec2 cell) {
+  if (any(greaterThanEqual(cell, (ivec2(frame.extent) + scale - 1) / scale))) return false;
+  ivec2 pixel = traced_pixel(cell, scale);
+  bool surface_there = imageLoad(motion, pixel).w > 0.0;
+  uint word = planned_word(pixel);
+  bool left_out = surface_there && (word & plan_specular) == 0u;
+  if (surface_there && !left_out && !is_unlit(pixel)) return true;
+  // A negative distance: no sample, and how far it was in the frame before.
+  float away = left_out ? min(-distance_before(word), -1e-6) : 0.0;
+  leave(cell, vec4(vec3(0.0), away), vec4(0.0));
+  return false;
+}
+
 void main() {
-  ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-  bool inside = all(lessThan(cell, (ivec2(frame.extent) + scale - 1) / scale));
-  ivec2 pixel = inside ? traced_pixel(cell, scale) : ivec2(0);
-  float view_z = inside ? imageLoad(motion, pixel).w : 0.0;
+  gather_pixel(wants_sample(ivec2(gl_GlobalInvocationID.xy)), ivec2(gl_GlobalInvocationID.xy));
   bool requested = false;
   Ray ray;
-#ifdef HALF_RESOLUTION
-  vec4 taken = vec4(0.0);
-#endif
-  uint word = by_plan != 0u ? imageLoad(planned, pixel).r : plan_specular;
-  bool left_out = view_z > 0.0 && (word & plan_specular) == 0u;
-  // A negative distance: no sample, and how far it was in the frame before.
-  vec4 seen = vec4(vec3(0.0), left_out ? min(-distance_before(word), -1e-6) : 0.0);
-  if (view_z > 0.0 && !left_out && !is_unlit(pixel)) {
+  if (has_gathered_pixel()) {
+    ivec2 cell = gathered_pixel();
+    ivec2 pixel = traced_pixel(cell, scale);
+    float view_z = imageLoad(motion, pixel).w;
+    uint word = planned_word(pixel);
+    vec4 seen = vec4(0.0);
     SurfaceMaterial m = material_at(pixel);
     SpecularSample s = sample_specular(m, specular_pair(cell, 4u, scale));
     vec3 weight = s.weight / specular_demodulator(m);
 #ifdef HALF_RESOLUTION
-    taken = vec4(s.direction, s.density);
     if (weight != vec3(0.0)) weight = vec3(1.0);
 #endif
     requested = traces_specular(specular_roughness(m), max_roughness);
@@ -70,11 +90,8 @@ void main() {
     ray.user = floatBitsToUint(weight.r);
     ray.padding0 = floatBitsToUint(weight.g);
     ray.padding1 = floatBitsToUint(weight.b);
+    leave(cell, seen, vec4(s.direction, s.density));
   }
-  if (inside) imageStore(radiance, cell, seen);
-#ifdef HALF_RESOLUTION
-  if (inside) imageStore(directions, cell, taken);
-#endif
   APPEND_RAY(requested, ray)
 }
 

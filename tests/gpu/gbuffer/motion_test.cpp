@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "render/kernels/common/ray_sink.hpp"
 #include "render/passes/gbuffer/gbuffer.hpp"
 #include "scene/animation/deform.hpp"
 #include "scene/import.hpp"
@@ -61,8 +62,7 @@ class Stage {
     rig_.moving().set_pose(scene::find_clip(*scene_, clip), seconds);
     rig_.moving().advance();
     rig_.set_view(camera, sample);
-    const shared::RayCount count{extent.width * extent.height,
-                                 (extent.width * extent.height + 63) / 64, 1, 1};
+    const shared::RayCount count = render::kernels::full_count(extent.width * extent.height, 0);
     std::memcpy(rig_.plan().get(stream_.count).mapped(), &count, sizeof count);
     auto* const rays = reinterpret_cast<shared::Ray*>(rig_.plan().get(stream_.rays).mapped());
     for (std::uint32_t i = 0; i < count.count; ++i)

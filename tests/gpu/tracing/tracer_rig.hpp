@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "render/kernels/common/ray_sink.hpp"
 #include "tests/support/traced_scene.hpp"
 #include "tracing/tracer_choice.hpp"
 
@@ -51,10 +52,7 @@ class Tracing {
                    std::uint32_t blending = 0) {
     TraceResults results{std::vector(rays.size(), shared::Hit{untouched, 0, 0, 0, 0, 0, 0, 0}),
                          std::vector(rays.size(), 7u)};
-    const std::uint32_t groups = (count + shared::rays_per_group - 1) / shared::rays_per_group;
-    const std::uint32_t rows = (groups + shared::groups_per_row - 1) / shared::groups_per_row;
-    const shared::RayCount header{count, std::min(groups, shared::groups_per_row), rows, 1,
-                                  blending};
+    const shared::RayCount header = render::kernels::full_count(count, blending);
     std::memcpy(plan_.get(stream_.count).mapped(), &header, sizeof(header));
     std::memcpy(plan_.get(stream_.rays).mapped(), rays.data(), rays.size_bytes());
     const auto hit_bytes = std::as_writable_bytes(std::span(results.hits));

@@ -191,6 +191,32 @@ TEST_P(TracerTest, TracesOnlyCountedRays) {
   }
 }
 
+// Few rays are spread over many groups, and many fill them.
+TEST_P(TracerTest, TracesEveryRayOfStreamsOfAnyLength) {
+  constexpr std::uint32_t filling = shared::spread_groups * shared::rays_per_group;
+  constexpr std::uint32_t spread = shared::spread_groups * shared::least_rays_per_group;
+  scene::Scene scene;
+  place(scene, add_mesh(scene, quad(), plain_material()), glm::mat4(1.0f));
+  std::vector<shared::Ray> rays(filling + shared::rays_per_group + 2);
+  for (std::uint32_t i = 0; i < rays.size(); ++i) {
+    rays[i].origin = {0.3f, 1.0f + static_cast<float>(i % 1000), 0.2f};
+    rays[i].direction = {0, -1, 0};
+    rays[i].t_max = 1e30f;
+  }
+  const TracedScene subject = traced(scene, GetParam());
+  for (const std::uint32_t count :
+       {7u, 8u, 9u, 100u, spread - 1, spread, spread + 1, 2 * spread + 5, filling - 1, filling,
+        filling + 1, filling + shared::rays_per_group + 1}) {
+    const TraceResults results = subject.trace(rays, count);
+    std::size_t wrong = 0;
+    for (std::uint32_t i = 0; i < rays.size(); ++i) {
+      const float t = i < count ? rays[i].origin.y : untouched;
+      wrong += results.hits[i].t != t || results.occluded[i] != (i < count ? 1u : 7u);
+    }
+    EXPECT_EQ(wrong, 0u) << count;
+  }
+}
+
 TEST_P(TracerTest, EmptySceneHasNoHits) {
   const std::vector<shared::Ray> rays = random_rays({}, 300, 6);
   EXPECT_EQ(hit_count(traced({}, GetParam()).trace(rays)), 0u);

@@ -21,9 +21,20 @@ inline void for_each_batch(int count, RangeWork work) {
 
 /// The indirect dispatch that covers a stream, as shaders/lib/rays/ray_stream.glsl leaves it.
 inline void set_groups(shared::RayCount& count) {
-  const std::uint32_t groups = (count.count + shared::rays_per_group - 1) / shared::rays_per_group;
-  count.groups_x = std::min(groups, shared::groups_per_row);
-  count.groups_y = std::max((groups + shared::groups_per_row - 1) / shared::groups_per_row, 1u);
+  const auto cover = [](std::uint32_t groups, std::uint32_t& x, std::uint32_t& y) {
+    x = std::min(groups, shared::groups_per_row);
+    y = std::max((groups + shared::groups_per_row - 1) / shared::groups_per_row, 1u);
+  };
+  cover((count.count + shared::rays_per_group - 1) / shared::rays_per_group, count.groups_x,
+        count.groups_y);
+  cover(shared::tracing_groups(count.count), count.tracing_groups_x, count.tracing_groups_y);
+}
+
+/// Of a stream of so many rays. `blending`: see shared::RayCount.
+inline shared::RayCount full_count(std::uint32_t rays, std::uint32_t blending) {
+  shared::RayCount count{rays, 0, 1, 1, blending, 0, 1, 1};
+  set_groups(count);
+  return count;
 }
 
 /// A stream of rays that a pass reads.
@@ -61,7 +72,7 @@ using RaysBeginJob = gpu::HostPass<RaysBeginBindings, RaysBeginConstants>;
 
 /// Empties a stream. `blending`: see shared::RayCount.
 inline void rays_begin(const RaysBeginJob& job, std::uint32_t blending) {
-  *job.count = {0, 0, 1, 1, blending, 0, 0, 0};
+  *job.count = full_count(0, blending);
 }
 
 }  // namespace heliograph::render::kernels
