@@ -1,11 +1,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
-// Finds every surface in the frame before, once for all signals, and packs what their filters are
+// Finds every surface in the frame before, once for all signals, and writes what their filters are
 // guided by.
 #include "lib/frame.glsl"
 #include "lib/math/octahedral.glsl"
-#include "lib/denoise/guide.glsl"
+#include "lib/denoise/packed_guide.glsl"
 #include "lib/denoise/reprojection.glsl"
 #include "shared/denoise.h"
 
@@ -19,6 +19,8 @@ layout(set = 1, binding = 6, rgba32f) readonly uniform image2D previous_motion;
 layout(set = 1, binding = 7, r32ui) readonly uniform uimage2D previous_instance;
 layout(set = 1, binding = 8, rgba32f) writeonly uniform image2D guide;
 layout(set = 1, binding = 9, rgba32f) writeonly uniform image2D reprojection;
+layout(set = 1, binding = 10, rg32ui) writeonly uniform uimage2D packed_guide;
+layout(set = 1, binding = 11, rg16f) writeonly uniform image2D packed_slope;
 layout(push_constant) uniform Constants { ReprojectConstants constants; };
 
 struct Expected {
@@ -92,12 +94,17 @@ void main() {
   vec4 moved = imageLoad(motion, pixel);
   if (moved.w <= 0.0) {
     imageStore(guide, pixel, vec4(0.0));
+    imageStore(packed_guide, pixel, packed_background.xyxy);
+    imageStore(packed_slope, pixel, vec4(0.0));
     imageStore(reprojection, pixel, vec4(vec2(pixel) + 0.5, 0.0, 0.0));
     return;
   }
   vec3 normal = shading_normal(pixel);
-  float roughness = imageLoad(surface, pixel).r;
-  imageStore(guide, pixel, encode_guide(Guide(normal, roughness, moved.w)));
+  vec2 slope = imageLoad(depth_slope, pixel).xy;
+  Guide here = Guide(normal, imageLoad(surface, pixel).r, moved.w);
+  imageStore(guide, pixel, encode_guide(here));
+  imageStore(packed_guide, pixel, pack_guide(here).xyxy);
+  imageStore(packed_slope, pixel, pack_slope(slope, moved.w));
 
   vec4 result = vec4(vec2(pixel) + 0.5, 0.0, 1.0);
   if (frame.history_invalid == 0u) {
@@ -105,7 +112,7 @@ void main() {
     expected.normal = normal;
     expected.normal_change = normal_change(pixel, normal);
     expected.view_z = moved.w + moved.z;
-    expected.slope = imageLoad(depth_slope, pixel).xy;
+    expected.slope = slope;
     expected.footprint = pixel_footprint(expected.view_z);
     expected.instance = imageLoad(instance, pixel).r;
     result = find(vec2(pixel) + 0.5 + moved.xy * vec2(frame.extent), expected);

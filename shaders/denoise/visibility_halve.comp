@@ -4,7 +4,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 // Visibility and what guides its blur at half the size: every texel is the mean of those pixels of
 // a square of 2x2 that show the same surface as the first that shows any.
 #include "lib/denoise/edge_stopping.glsl"
-#include "lib/denoise/guide.glsl"
+#include "lib/denoise/packed_guide.glsl"
 #include "lib/frame.glsl"
 #include "shared/denoise.h"
 
@@ -14,6 +14,8 @@ layout(set = 1, binding = 2, rgba32f) readonly uniform image2D signal;
 layout(set = 1, binding = 3, rgba32f) writeonly uniform image2D half_guide;
 layout(set = 1, binding = 4, rg32f) writeonly uniform image2D half_slope;
 layout(set = 1, binding = 5, rgba32f) writeonly uniform image2D half_signal;
+layout(set = 1, binding = 6, rg32ui) writeonly uniform uimage2D packed_guide;
+layout(set = 1, binding = 7, rg16f) writeonly uniform image2D packed_slope;
 layout(push_constant) uniform Constants { AtrousConstants constants; };
 
 void main() {
@@ -48,8 +50,13 @@ void main() {
     sum += vec4(vec2(weight), vec2(weight * weight)) * imageLoad(signal, pixel);
     total += weight;
   }
-  float inverse = total > 0.0 ? 1.0 / total : 0.0;
+  bool known = total > 0.0;
+  slope *= 2.0;
   imageStore(half_guide, texel, first);
-  imageStore(half_slope, texel, vec4(2.0 * slope, 0.0, 0.0));
+  imageStore(half_slope, texel, vec4(slope, 0.0, 0.0));
+  imageStore(packed_guide, texel,
+             (known ? pack_guide(decode_guide(first)) : packed_background).xyxy);
+  imageStore(packed_slope, texel, known ? pack_slope(slope, first.w) : vec4(0.0));
+  float inverse = known ? 1.0 / total : 0.0;
   imageStore(half_signal, texel, sum * vec4(vec2(inverse), vec2(inverse * inverse)));
 }

@@ -103,8 +103,7 @@ float likeness(int a, int b) {
 void keep(ivec2 pixel, vec3 seen, vec3 color, float variance) {
   vec4 texel = vec4(color, sqrt(variance));
   if (any(isnan(texel)) || any(isinf(texel))) texel = vec4(seen, 0.0);
-  // Stores round toward zero on some devices, which would darken the image.
-  imageStore(filtered, pixel, as_halves(texel, uvec4(0x80000000u)));
+  imageStore(filtered, pixel, nearest_halves(texel));
 }
 
 void main() {

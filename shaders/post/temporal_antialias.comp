@@ -1,12 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 16, local_size_y = 16) in;
 // Temporal antialiasing: the mean of the samples of a pixel along the motion of surfaces, kept
 // within mean and deviation of the 3x3 neighbours in YCgCo (Salvi 2016). A jittered sample of a
 // pixel is one of the pixel's whole area; it is not filtered again. What blurs is reading the
 // history between its texels, frame after frame: a cubic steeper than Catmull-Rom's makes up for it.
 // Of a frame that is drawn smaller than it is shown, each pixel takes the nearest sample, by its
-// distance from the pixel's centre: the structure of Snapdragon GSR 2.
+// distance from the pixel's centre: the structure of Snapdragon GSR 2. What neighbours have in
+// common is read once for a group.
 #include "lib/frame.glsl"
 #include "shared/exposure.h"
 
@@ -39,6 +40,12 @@ const float off_texel_slope = 8.0;
 // in pixels, and how much wider the box is about neighbours that lie farther apart.
 const float distance_falloff = 2.0;
 const float scaled_box = 1.3;
+
+const int group_side = 16;
+// Samples are no farther apart than the pixels that take them; each reads those about its own.
+const int side = group_side + 2;
+shared vec3 colors[side * side];   // compressed()
+shared vec3 motions[side * side];  // z: view Z
 
 vec3 ycgco_from_rgb(vec3 c) {
   return vec3(dot(c, vec3(0.25, 0.5, 0.25)), dot(c, vec3(-0.25, 0.5, -0.25)),
@@ -73,21 +80,33 @@ vec2 background_motion(ivec2 pixel) {
   return (before.xy / before.w - now.xy / now.w) * 0.5;
 }
 
-/// Motion of the nearest surface of 3x3 pixels: an edge moves with what lies in front. Elsewhere
-/// that of the pixel itself: its neighbours on the same surface move by more or less.
-vec2 edge_motion(ivec2 pixel) {
+/// What the group reads of the frame, from `corner` on; beyond the border that of the nearest
+/// pixel.
+void read_tile(ivec2 corner) {
   ivec2 last = ivec2(frame.extent) - 1;
-  vec4 own = imageLoad(motion, pixel);
-  vec4 closest = own;
+  for (int i = int(gl_LocalInvocationIndex); i < side * side; i += group_side * group_side) {
+    ivec2 at = clamp(corner + ivec2(i % side, i / side), ivec2(0), last);
+    colors[i] = compressed(imageLoad(hdr, at).rgb);
+    motions[i] = imageLoad(motion, at).xyw;
+  }
+  barrier();
+}
+
+/// Motion of the nearest surface of 3x3 pixels about `middle` of the tile: an edge moves with what
+/// lies in front. Elsewhere that of the pixel itself: its neighbours on the same surface move by
+/// more or less.
+vec2 edge_motion(ivec2 pixel, int middle) {
+  vec3 own = motions[middle];
+  vec3 closest = own;
   for (int y = -1; y <= 1; ++y) {
     for (int x = -1; x <= 1; ++x) {
-      vec4 candidate = imageLoad(motion, clamp(pixel + ivec2(x, y), ivec2(0), last));
-      if (candidate.w <= 0.0 || (closest.w > 0.0 && candidate.w >= closest.w)) continue;
+      vec3 candidate = motions[middle + y * side + x];
+      if (candidate.z <= 0.0 || (closest.z > 0.0 && candidate.z >= closest.z)) continue;
       closest = candidate;
     }
   }
-  if (closest.w <= 0.0) return background_motion(pixel);
-  bool edge = own.w <= 0.0 || own.w - closest.w > edge_depth * closest.w;
+  if (closest.z <= 0.0) return background_motion(pixel);
+  bool edge = own.z <= 0.0 || own.z - closest.z > edge_depth * closest.z;
   return edge ? closest.xy : own.xy;
 }
 
@@ -111,17 +130,20 @@ vec4 sample_history(vec2 uv) {
   ivec2 first = ivec2(floor(position)), last = ivec2(shown) - 1;
   vec2 f = position - vec2(first);
   vec4 across = cubic_weights(f.x), down = cubic_weights(f.y);
+  ivec2 nearest = 1 + ivec2(greaterThanEqual(f, vec2(0.5)));
+  float samples = 0.0;
   vec3 sum = vec3(0.0);
   for (int y = 0; y < 4; ++y) {
     vec3 line = vec3(0.0);
     for (int x = 0; x < 4; ++x) {
       ivec2 at = clamp(first + ivec2(x, y) - 1, ivec2(0), last);
-      line += texelFetch(history, at, 0).rgb * across[x];
+      vec4 texel = texelFetch(history, at, 0);
+      line += texel.rgb * across[x];
+      if (ivec2(x, y) == nearest) samples = texel.a;
     }
     sum += line * down[y];
   }
-  ivec2 nearest = clamp(first + ivec2(greaterThanEqual(f, vec2(0.5))), ivec2(0), last);
-  return vec4(max(sum, 0.0), texelFetch(history, nearest, 0).a);
+  return vec4(max(sum, 0.0), samples);
 }
 
 struct Sample {
@@ -143,29 +165,32 @@ Sample nearest_sample(ivec2 pixel) {
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(uvec2(pixel), shown))) return;
+  bool outside = any(greaterThanEqual(uvec2(pixel), shown));
   if (hold != 0u) {
-    imageStore(resolved, pixel, texelFetch(history, pixel, 0));
+    if (!outside) imageStore(resolved, pixel, texelFetch(history, pixel, 0));
     return;
   }
+  ivec2 corner = nearest_sample(ivec2(gl_WorkGroupID.xy) * group_side).pixel - 1;
+  read_tile(corner);
+  if (outside) return;
   Sample found = nearest_sample(pixel);
-  vec3 radiance = imageLoad(hdr, found.pixel).rgb;
+  // Where rounding decides between two samples, one that the tile holds.
+  ivec2 place = min(found.pixel - corner, ivec2(group_side));
+  int middle = place.y * side + place.x;
   vec2 uv = (vec2(pixel) + 0.5) / vec2(shown);
-  vec2 before = uv + edge_motion(found.pixel);
+  vec2 before = uv + edge_motion(found.pixel, middle);
   // What was outside the previous frame has no history.
   bool known = frame.history_invalid == 0u && all(greaterThanEqual(before, vec2(0.0))) &&
                all(lessThanEqual(before, vec2(1.0)));
   if (!known) {
-    imageStore(resolved, pixel, vec4(radiance, found.weight));
+    imageStore(resolved, pixel, vec4(imageLoad(hdr, found.pixel).rgb, found.weight));
     return;
   }
 
-  ivec2 last = ivec2(frame.extent) - 1;
   vec3 nearby[9];
   vec3 mean = vec3(0.0);
   for (int i = 0; i < 9; ++i) {
-    ivec2 at = clamp(found.pixel + ivec2(i % 3, i / 3) - 1, ivec2(0), last);
-    nearby[i] = compressed(imageLoad(hdr, at).rgb);
+    nearby[i] = colors[middle + (i / 3 - 1) * side + i % 3 - 1];
     mean += nearby[i] / 9.0;
   }
   // About the mean, not as a difference of squares: compressed highlights hardly differ.
@@ -186,6 +211,6 @@ void main() {
     float margin = min(abs(old.x - low.x), abs(high.x - old.x));
     weight *= max(margin / max(margin + high.x - low.x, 1e-6), min_anti_flicker);
   }
-  vec3 blended = mix(clamp(old, low, high), compressed(radiance), weight);
+  vec3 blended = mix(clamp(old, low, high), nearby[4], weight);
   imageStore(resolved, pixel, vec4(expanded(blended), samples));
 }

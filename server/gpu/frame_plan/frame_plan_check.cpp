@@ -33,6 +33,10 @@ bool is_image(VkDescriptorType type) {
          type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 }
 
+bool is_packed(VkFormat format) {
+  return format == VK_FORMAT_R32G32B32A32_UINT || format == VK_FORMAT_R32G32_UINT;
+}
+
 /// What is wrong with binding an image or buffer called `given` there; empty: nothing.
 std::string mismatch(const ShaderBinding& binding, const Image* image, const std::string& given,
                      bool reads, bool writes) {
@@ -144,7 +148,7 @@ void FramePlan::list_views() {
       const Resource& resource = resources_[use.resource];
       const Image* image = resource.images[0];
       if (!writes(use) || !image || is_depth(image->desc().format)) continue;
-      if (image->desc().format == VK_FORMAT_R32G32B32A32_UINT) continue;  // packed: nothing to see
+      if (is_packed(image->desc().format)) continue;  // nothing to see
       if (resource.level || !listed.insert(use.resource).second) continue;
       views_.push_back({resource.name, {use.resource}});
     }

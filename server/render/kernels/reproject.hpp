@@ -11,6 +11,7 @@ struct ReprojectBindings {
   gpu::Read<Stage> normals, surface, motion, depth_slope, instance;
   gpu::Read<Stage> previous_normals, previous_motion, previous_instance;
   gpu::Write<Stage> guide, reprojection;
+  gpu::OptionalWrite<Stage> packed_guide, packed_slope;  // of the shader alone
 };
 using ReprojectJob = FrameJob<ReprojectBindings, shared::ReprojectConstants>;
 

@@ -14,6 +14,7 @@ struct VisibilityHalveBindings {
   gpu::Write<Stage> half_guide;   // rgba32f, as the others a texel for each square of 2x2 pixels
   gpu::Write<Stage> half_slope;   // rg32f, from texel to texel
   gpu::Write<Stage> half_signal;  // rgba32f
+  gpu::OptionalWrite<Stage> packed_guide, packed_slope;  // of the shader alone
 };
 using VisibilityHalveJob = FrameJob<VisibilityHalveBindings, shared::AtrousConstants>;
 

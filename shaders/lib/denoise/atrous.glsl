@@ -3,6 +3,10 @@
 #include "lib/denoise/atrous_taps.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
+layout(set = 1, binding = 0, rgba32f) readonly uniform image2D guide;
+layout(set = 1, binding = 1, rg32f) readonly uniform image2D depth_slope;
+layout(set = 1, binding = 2, rgba32f) readonly uniform image2D signal;
+layout(set = 1, binding = 3, rgba32f) writeonly uniform image2D filtered;
 layout(push_constant) uniform Constants { AtrousConstants constants; };
 #include "lib/denoise/smooth_variance.glsl"
 
@@ -22,13 +26,12 @@ void main() {
   ivec2 extent = image_extent(constants);
   if (any(greaterThanEqual(pixel, extent))) return;
   vec4 value = imageLoad(signal, pixel);
-  vec4 guide_p = imageLoad(guide, pixel);
-  Guide p = decode_guide(guide_p);
-  if (is_left(constants, guide_p, p)) {
+  Guide p = decode_guide(imageLoad(guide, pixel));
+  if (is_left(constants, p)) {
     imageStore(filtered, pixel, value);
     return;
   }
-  Center c = center_at(constants, pixel, p, value);
+  Center c = center_at(constants, pixel, p, imageLoad(depth_slope, pixel).xy, value);
   vec2 variance = has(constants, atrous_variance_prefilter) ? smooth_variance(pixel, extent)
                                                             : variance_of(value);
   vec2 noise = sqrt(max(variance, vec2(0.0)));  // standard deviation

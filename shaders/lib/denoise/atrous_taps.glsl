@@ -1,6 +1,6 @@
 // Pixels and taps of the edge-avoiding a-trous wavelet filter (Dammertz et al. 2010), which is
 // guided by variance (Schied et al. 2017, equations 1 to 5). What a signal is comes from the shader
-// that includes this.
+// that includes this, as do the images.
 #ifndef HELIOGRAPH_DENOISE_ATROUS_TAPS_GLSL
 #define HELIOGRAPH_DENOISE_ATROUS_TAPS_GLSL
 #include "lib/denoise/edge_stopping.glsl"
@@ -8,11 +8,6 @@
 #include "lib/frame.glsl"
 #include "lib/math/random.glsl"
 #include "shared/denoise.h"
-
-layout(set = 1, binding = 0, rgba32f) readonly uniform image2D guide;
-layout(set = 1, binding = 1, rg32f) readonly uniform image2D depth_slope;
-layout(set = 1, binding = 2, rgba32f) readonly uniform image2D signal;
-layout(set = 1, binding = 3, rgba32f) writeonly uniform image2D filtered;
 
 /// Of the B3 spline (1, 4, 6, 4, 1) / 16 against its middle: logarithms of 1, 2/3 and 1/6.
 const float kernel_exponent[3] = float[3](0.0, -0.40546511, -1.79175947);
@@ -30,13 +25,14 @@ struct Center {
   vec2 brightness;
 };
 
-Center center_at(AtrousConstants constants, ivec2 pixel, Guide p, vec4 value) {
+/// `slope`: change of view Z from texel to texel.
+Center center_at(AtrousConstants constants, ivec2 pixel, Guide p, vec2 slope, vec4 value) {
   Center c;
   c.pixel = pixel;
   c.normal = p.normal;
   c.roughness = p.roughness;
   c.view_z = p.view_z;
-  c.slope = imageLoad(depth_slope, pixel).xy;
+  c.slope = slope;
   c.curve = enabled(frame_orthographic) ? 0.0 : 1.0 / c.view_z;
   c.footprint = pixel_footprint(c.view_z) * float(constants.pixels_per_texel);
   c.brightness = brightness(value);
@@ -62,8 +58,8 @@ int levels(AtrousConstants constants, float roughness) {
 }
 
 /// Whether this iteration leaves the pixel as it is.
-bool is_left(AtrousConstants constants, vec4 texel, Guide p) {
-  return guide_is_background(texel) || constants.level >= levels(constants, p.roughness);
+bool is_left(AtrousConstants constants, Guide p) {
+  return p.view_z <= 0.0 || constants.level >= levels(constants, p.roughness);
 }
 
 /// Pixels from tap to tap: twice as many on surfaces rougher than the threshold, with a band

@@ -18,7 +18,11 @@ vec4 as_halves(vec4 value, uvec4 rounding) {
   return uintBitsToFloat((floatBitsToUint(finite) + (rounding >> 19u)) & 0xffffe000u);
 }
 
-/// Of 0 to 1 for rgba16 images, likewise; what lies next to nothing away from a step is on it.
+/// Likewise, but to the nearest step: for what is no running mean. Stores of other values round
+/// toward zero on some devices, which would darken them.
+vec4 nearest_halves(vec4 value) { return as_halves(value, uvec4(0x80000000u)); }
+
+/// Of 0 to 1 for rgba16 images, in turn; what lies next to nothing away from a step is on it.
 vec4 as_fractions(vec4 value, uvec4 rounding) {
   vec4 offset =
       vec4(rounding >> 16u) * (rounding_range / 65536.0) + (0.5 - 0.5 * rounding_range);

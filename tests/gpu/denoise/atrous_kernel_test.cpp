@@ -6,6 +6,7 @@
 
 #include "render/kernels/atrous.hpp"
 #include "shaders/embedded.hpp"
+#include "tests/gpu/denoise/packed_input.hpp"
 #include "tests/support/frame_rig.hpp"
 
 namespace heliograph::test {
@@ -15,6 +16,9 @@ namespace kernels = render::kernels;
 
 enum class Signal { visibility, specular };
 using Texels = std::vector<glm::vec4>;
+
+// A threshold that is no step of stored roughness: both sides must decide alike.
+constexpr float between_roughnesses = 51.5f / 255.0f;
 
 /// A guide with planes, edges, holes and various roughnesses, and a noisy signal.
 struct Field {
@@ -32,9 +36,10 @@ Field make_field(VkExtent2D extent, Signal kind) {
       const bool left = x < extent.width / 2;
       const glm::vec3 normal =
           glm::normalize(glm::vec3(left ? 0.2f : -0.6f, 1.0f, 0.3f) + 0.02f * unit(random));
-      const float roughness = y < extent.height / 3 ? 0.2f + 0.04f * (unit(random) - 0.5f)
-                              : left                ? 0.03f
-                                                    : 0.6f;
+      const float roughness =
+          stored_roughness(y < extent.height / 3 ? 0.2f + 0.04f * (unit(random) - 0.5f)
+                           : left                ? 0.03f
+                                                 : 0.6f);
       const bool hole = x % 19 == 7 && y % 5 == 2;
       const float view_z =
           hole ? 0.0f : 3.0f + 0.02f * static_cast<float>(x) + (left ? 0.0f : 1.0f);
@@ -54,19 +59,27 @@ class AtrousRig {
   AtrousRig(VkExtent2D extent, Signal kind, bool orthographic = false)
       : kind_(kind), rig_(SceneBuilder().build(), camera(orthographic), {.extent = extent}) {
     const Field field = make_field(extent, kind);
-    constexpr VkFormat four = VK_FORMAT_R32G32B32A32_SFLOAT;
+    constexpr VkFormat four = render::formats::four_floats;
     guide_ = rig_.input("guide", four, field.guide);
     slope_ = rig_.input("slope", VK_FORMAT_R32G32_SFLOAT, field.slope);
     signal_ = rig_.input("signal", four, field.signal);
+    packed_ = packed_input(rig_, field.guide, field.slope);
     by_shader_ = rig_.plan().image("shader", four);
     by_host_ = rig_.plan().image("host", four);
     declare("atrous", by_shader_, false);
     declare("atrous.host", by_host_, true);
-    between_ = rig_.plan().image("between", four);
+    between_ = rig_.plan().image("between", render::formats::four_halves);
     by_two_shaders_ = rig_.plan().image("shaders", four);
     both_by_host_ = rig_.plan().image("both.host", four);
-    declare_shader("atrous.first", signal_, between_, &kernels::AtrousHalves::first);
-    declare_shader("atrous.second", between_, by_two_shaders_, &kernels::AtrousHalves::second);
+    const bool visibility = kind == Signal::visibility;
+    declare_shader(
+        "atrous.first",
+        visibility ? shaders::visibility_atrous_half_first : shaders::specular_atrous_half_first,
+        signal_, between_, &kernels::AtrousHalves::first);
+    declare_shader(
+        "atrous.second",
+        visibility ? shaders::visibility_atrous_half_last : shaders::specular_atrous_half_last,
+        between_, by_two_shaders_, &kernels::AtrousHalves::second);
     declare_halves();
     rig_.set_view(camera(orthographic), 5);
   }
@@ -139,15 +152,15 @@ class AtrousRig {
         .host(visibility ? kernels::visibility_atrous : kernels::specular_atrous, rig_.constants());
   }
 
-  void declare_shader(const std::string& name, gpu::ImageRef from, gpu::ImageRef to,
-                      shared::AtrousConstants kernels::AtrousHalves::*half) {
-    const bool visibility = kind_ == Signal::visibility;
+  void declare_shader(const std::string& name, const gpu::ShaderBinary& shader, gpu::ImageRef from,
+                      gpu::ImageRef to, shared::AtrousConstants kernels::AtrousHalves::*half) {
     rig_.plan().use_host_kernels(false);
     rig_.plan()
-        .pass(name, rig_.inputs().program(visibility ? shaders::visibility_atrous_half
-                                                     : shaders::specular_atrous_half))
-        .bind<kernels::AtrousBindings>(
-            {.guide = guide_, .depth_slope = slope_, .signal = from, .filtered = to})
+        .pass(name, rig_.inputs().program(shader))
+        .bind<kernels::AtrousBindings>({.guide = packed_.surface.value(),
+                                        .depth_slope = packed_.slope.value(),
+                                        .signal = from,
+                                        .filtered = to})
         .constants([this, half] { return halves_.*half; })
         .dispatch(rig_.plan().extent());
   }
@@ -168,6 +181,7 @@ class AtrousRig {
   kernels::AtrousHalves halves_{{.pixels_per_texel = 1}, {.pixels_per_texel = 1}};
   FrameRig rig_;
   gpu::ImageRef guide_, slope_, signal_, by_shader_, by_host_;
+  render::PackedGuide packed_;
   gpu::ImageRef between_, by_two_shaders_, both_by_host_;
 };
 
@@ -209,7 +223,7 @@ TEST_P(AtrousKernel, MatchesShader) {
     AtrousRig rig({77, 45}, GetParam(), orthographic);
     for (const auto& [columns, rows] : {std::pair(2, 2), {2, 0}, {0, 2}}) {
       for (const int level : {0, 1, 3}) {
-        for (const float threshold : {-1.0f, 0.2f, 2.0f}) {
+        for (const float threshold : {-1.0f, between_roughnesses, 2.0f}) {
           for (const std::uint32_t flags : {0u, 1u, 3u, 5u, 15u}) {
             const auto result = rig.compare(constants(level, columns, rows, flags, threshold));
             const std::string which = "kernel " + std::to_string(columns) + "," +
@@ -240,27 +254,28 @@ TEST_P(AtrousKernel, MatchesShaderWhereThreadsShareAFrame) {
   AtrousRig rig({600, 150}, GetParam());
   for (const auto& [columns, rows] : {std::pair(2, 2), {2, 0}, {0, 2}}) {
     for (const int level : {0, 3}) {
-      const auto result = rig.compare(constants(level, columns, rows, 5u, 0.2f));
+      const auto result = rig.compare(constants(level, columns, rows, 5u, between_roughnesses));
       EXPECT_LT(result.mean, 1e-4) << columns << "," << rows << " level " << level;
       EXPECT_LT(result.max, 5e-3) << columns << "," << rows << " level " << level;
     }
   }
 }
 
+// Between the shader's passes a signal of up to 3 holds 16 bits a channel.
 TEST_P(AtrousKernel, HalvesAtOnceMatchTwoPassesOfTheShader) {
   for (const bool orthographic : {false, true}) {
     AtrousRig rig({77, 45}, GetParam(), orthographic);
     for (const bool across_first : {false, true}) {
       for (const int level : {0, 1, 3}) {
-        for (const float threshold : {-1.0f, 0.2f, 2.0f}) {
+        for (const float threshold : {-1.0f, between_roughnesses, 2.0f}) {
           for (const std::uint32_t flags : {0u, 1u, 3u, 5u, 15u}) {
             const auto result = rig.compare(halves(level, across_first, flags, threshold));
             const std::string which = std::string(across_first ? "across" : "down") +
                                       " first, level " + std::to_string(level) + " flags " +
                                       std::to_string(flags) + " threshold " +
                                       std::to_string(threshold);
-            EXPECT_LT(result.mean, 1e-4) << which;
-            EXPECT_LT(result.max, 5e-3) << which;
+            EXPECT_LT(result.mean, 2e-4) << which;
+            EXPECT_LT(result.max, 8e-3) << which;
             EXPECT_GT(result.changed, 0.01) << "the filter changes nothing: " << which;
           }
         }
@@ -275,8 +290,8 @@ TEST_P(AtrousKernel, HalvesAtOnceMatchTwoPassesAtAnySize) {
     AtrousRig rig(extent, GetParam());
     for (const bool across_first : {false, true}) {
       for (const int level : {0, 4}) {
-        const auto result = rig.compare(halves(level, across_first, 5u, 0.2f));
-        EXPECT_LT(result.mean, 1e-4) << extent.width << " x " << extent.height << " level " << level
+        const auto result = rig.compare(halves(level, across_first, 5u, between_roughnesses));
+        EXPECT_LT(result.mean, 5e-4) << extent.width << " x " << extent.height << " level " << level
                                      << (across_first ? " across first" : " down first");
       }
     }
@@ -289,7 +304,7 @@ TEST_P(AtrousKernel, IsFasterThanShader) {
   double shader = 0.0, host = 0.0;
   for (const int level : {0, 3}) {
     for (const auto& [columns, rows] : {std::pair(2, 0), {0, 2}, {2, 2}}) {
-      const auto [a, b] = rig.time(constants(level, columns, rows, 5u, 0.2f));
+      const auto [a, b] = rig.time(constants(level, columns, rows, 5u, between_roughnesses));
       shader += a;
       host += b;
       RecordProperty(

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "render/kernels/visibility_half.hpp"
+#include "render/passes/denoise/denoise_visibility.hpp"
 #include "render/passes/formats.hpp"
 #include "shaders/embedded.hpp"
 #include "tests/gpu/support/kernel_comparison.hpp"
@@ -93,13 +94,18 @@ class HalfRig {
                       plan.image(name + ".signal", four_floats, 0, half),
                       plan.image(name + ".denoised", four_floats)};
     plan.use_host_kernels(host);
+    const auto& buffers = render::half_visibility_buffers;
+    const render::PackedGuide packed =
+        render::declare_packed_guide(plan, buffers.guide, buffers.slope, half);
     plan.pass(name + ".halve", rig_.inputs().program(shaders::visibility_halve))
         .bind<kernels::VisibilityHalveBindings>({.guide = guide_,
                                                  .depth_slope = slope_,
                                                  .signal = signal_,
                                                  .half_guide = made.guide,
                                                  .half_slope = made.slope,
-                                                 .half_signal = made.signal})
+                                                 .half_signal = made.signal,
+                                                 .packed_guide = packed.surface,
+                                                 .packed_slope = packed.slope})
         .constants([this] { return constants_; })
         .dispatch(half)
         .host(kernels::visibility_halve, rig_.constants());

@@ -22,6 +22,8 @@ inline constexpr std::array specular_denoised_aspects{
            "Standard deviation of the reflection's brightness that the blur leaves; captured: "
            "variance."}};
 
+/// Between the passes of a separable blur by shaders 16 bits a channel, with standard deviations in
+/// place of variances; otherwise, and what is denoised, 32 bits.
 struct AtrousBuffers {
   BufferDescription even, odd;  // between iterations
   BufferDescription half;       // between the halves of a separable iteration, in shaders
@@ -76,6 +78,15 @@ struct AtrousInput {
   gpu::ImageRef guide;        // shaders/lib/denoise/guide.glsl
   gpu::ImageRef depth_slope;  // from texel to texel
   gpu::ImageRef signal;
+  PackedGuide packed;
+};
+
+/// Shaders of the halves of separable iterations, by what they read and write: the signal to be
+/// blurred, what lies between passes, the result.
+struct AtrousHalfPrograms {
+  gpu::ProgramSource first;  // from the signal
+  gpu::ProgramSource between;
+  gpu::ProgramSource last;  // to the result
 };
 
 /// A blur of one signal: how often, and what its passes read every frame.
@@ -83,7 +94,7 @@ struct AtrousConfig {
   std::string name;  // of the passes, before the number of the iteration
   const AtrousBuffers& buffers;
   gpu::ProgramSource program;
-  gpu::ProgramSource half_program;  // of a separable iteration
+  AtrousHalfPrograms half_programs;
   void (*kernel)(const kernels::AtrousJob&);
   void (*halves_kernel)(const kernels::AtrousHalvesJob&);
   int iterations;

@@ -17,15 +17,17 @@ AtrousConfig indirect_atrous_config(const FrameInputs& in) {
     made.start_threshold = settings.adapt_start ? -1.0f : 2.0f;
     return made;
   };
-  return {"indirect.atrous",
-          indirect_atrous_buffers,
-          in.program(shaders::specular_atrous),
-          in.program(shaders::specular_atrous_half),
-          kernels::specular_atrous,
-          kernels::specular_atrous_halves,
-          settings.iterations,
-          settings.kernel,
-          constants};
+  return {
+      "indirect.atrous",
+      indirect_atrous_buffers,
+      in.program(shaders::specular_atrous),
+      {in.program(shaders::specular_atrous_half_first), in.program(shaders::specular_atrous_half),
+       in.program(shaders::specular_atrous_half_last)},
+      kernels::specular_atrous,
+      kernels::specular_atrous_halves,
+      settings.iterations,
+      settings.kernel,
+      constants};
 }
 
 /// At the size of `noisy` and of what guides it.
@@ -42,7 +44,7 @@ gpu::ImageRef denoise(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer
     feed_radiance_back(plan, in, channel, accumulated, filtered);
   };
   estimate_radiance_variance(plan, in, gbuffer, guide, channel, accumulated);
-  return blur(plan, in, {guide.surface, gbuffer.depth_slope, accumulated.signal},
+  return blur(plan, in, {guide.surface, gbuffer.depth_slope, accumulated.signal, guide.packed},
               indirect_atrous_config(in),
               feedback ? std::optional(Feedback{blurring.feedback, feed_back}) : std::nullopt);
 }

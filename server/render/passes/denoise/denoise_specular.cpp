@@ -52,15 +52,17 @@ AtrousConfig specular_atrous_config(const FrameInputs& in) {
     }
     return made;
   };
-  return {"specular.atrous",
-          specular_atrous_buffers,
-          in.program(shaders::specular_atrous),
-          in.program(shaders::specular_atrous_half),
-          kernels::specular_atrous,
-          kernels::specular_atrous_halves,
-          settings.iterations,
-          settings.kernel,
-          constants};
+  return {
+      "specular.atrous",
+      specular_atrous_buffers,
+      in.program(shaders::specular_atrous),
+      {in.program(shaders::specular_atrous_half_first), in.program(shaders::specular_atrous_half),
+       in.program(shaders::specular_atrous_half_last)},
+      kernels::specular_atrous,
+      kernels::specular_atrous_halves,
+      settings.iterations,
+      settings.kernel,
+      constants};
 }
 
 }  // namespace
@@ -83,7 +85,7 @@ gpu::ImageRef denoise_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
       feed_radiance_back(plan, in, channel, accumulated, filtered);
     };
     estimate_radiance_variance(plan, in, gbuffer, guide, channel, accumulated);
-    signal = blur(plan, in, {guide.surface, gbuffer.depth_slope, accumulated.signal},
+    signal = blur(plan, in, {guide.surface, gbuffer.depth_slope, accumulated.signal, guide.packed},
                   specular_atrous_config(in),
                   feedback ? std::optional(Feedback{blurring.feedback, feed_back}) : std::nullopt);
   }

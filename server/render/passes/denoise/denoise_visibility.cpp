@@ -43,7 +43,9 @@ AtrousConfig visibility_atrous_config(const FrameInputs& in, const AtrousBuffers
   return {"visibility.atrous",
           buffers,
           in.program(shaders::visibility_atrous),
-          in.program(shaders::visibility_atrous_half),
+          {in.program(shaders::visibility_atrous_half_first),
+           in.program(shaders::visibility_atrous_half),
+           in.program(shaders::visibility_atrous_half_last)},
           kernels::visibility_atrous,
           kernels::visibility_atrous_halves,
           settings.iterations,
@@ -60,14 +62,17 @@ AtrousInput halved(gpu::FramePlan& plan, const FrameInputs& in, const AtrousInpu
   const AtrousInput made{
       plan.image(buffers.guide.name, formats::four_floats, 0, half_size()),
       plan.image(buffers.depth_slope.name, VK_FORMAT_R32G32_SFLOAT, 0, half_size()),
-      plan.image(buffers.signal.name, formats::four_floats, 0, half_size())};
+      plan.image(buffers.signal.name, formats::four_floats, 0, half_size()),
+      declare_packed_guide(plan, buffers.guide, buffers.slope, half_size())};
   plan.pass("visibility.halve", in.program(shaders::visibility_halve))
       .bind<kernels::VisibilityHalveBindings>({.guide = input.guide,
                                                .depth_slope = input.depth_slope,
                                                .signal = input.signal,
                                                .half_guide = made.guide,
                                                .half_slope = made.depth_slope,
-                                               .half_signal = made.signal})
+                                               .half_signal = made.signal,
+                                               .packed_guide = made.packed.surface,
+                                               .packed_slope = made.packed.slope})
       .constants([in] { return atrous_constants(in.settings.shadow_blur, in.scene_motion, {}); })
       .dispatch(half_size())
       .host(kernels::visibility_halve, in.constants);
@@ -124,7 +129,7 @@ gpu::ImageRef denoise_visibility(gpu::FramePlan& plan, const FrameInputs& in,
     feed_visibility_back(plan, in, accumulated, filtered);
   };
   estimate_visibility_variance(plan, in, gbuffer, guide, accumulated);
-  const AtrousInput input{guide.surface, gbuffer.depth_slope, accumulated.signal};
+  const AtrousInput input{guide.surface, gbuffer.depth_slope, accumulated.signal, guide.packed};
   if (blurring.half_resolution && !feedback) return blur_at_half_size(plan, in, input);
   return blur(plan, in, input, visibility_atrous_config(in, visibility_atrous_buffers),
               feedback ? std::optional(Feedback{blurring.feedback, feed_back}) : std::nullopt);

@@ -16,6 +16,9 @@ inline constexpr struct HalfVisibilityBuffers {
                           "times 1 + roughness; view Z, metres (w)."};
   BufferDescription depth_slope{"visibility.half.depth_slope", ViewColors::difference,
                                 "Change of view Z to the next texel of half the size, metres."};
+  BufferDescription slope{
+      "visibility.half.slope", ViewColors::difference,
+      "Change of view Z to the next texel of half the size, in parts of view Z."};
   BufferDescription signal{"visibility.half", ViewColors::channels,
                            "Accumulated shadow (red) and ambient (green) visibility at half the "
                            "size; variances (zw)."};

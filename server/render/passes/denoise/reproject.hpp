@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <string>
 
 #include "render/passes/gbuffer/gbuffer.hpp"
@@ -19,6 +20,7 @@ inline constexpr std::array reproject_motion_aspects{
 struct ReprojectBuffers {
   BufferDescription guide;
   BufferDescription motion;
+  BufferDescription slope;
 };
 inline constexpr ReprojectBuffers reproject_buffers{
     {"reproject.guide", ViewColors::direction,
@@ -27,7 +29,9 @@ inline constexpr ReprojectBuffers reproject_buffers{
      .colors = ViewColors::heat,
      .description = "Where each surface was in the frame before: pixel (xy), bits of the valid "
                     "neighbours (z), 1 where it was disoccluded (w).",
-     .aspects = reproject_motion_aspects}};
+     .aspects = reproject_motion_aspects},
+    {"reproject.slope", ViewColors::difference,
+     "Change of view Z to the pixel on the right and below, in parts of view Z."}};
 inline constexpr ReprojectBuffers indirect_reproject_buffers{
     {"indirect.reproject.guide", ViewColors::direction,
      "The same at half the size: shading normal in world space times 2; view Z, metres (w)."},
@@ -36,13 +40,28 @@ inline constexpr ReprojectBuffers indirect_reproject_buffers{
      .description =
          "Where each surface was in the frame before, at half the size: texel (xy), bits "
          "of the valid neighbours (z), 1 where it was disoccluded (w).",
-     .aspects = reproject_motion_aspects}};
+     .aspects = reproject_motion_aspects},
+    {"indirect.reproject.slope", ViewColors::difference,
+     "Change of view Z to the next texel of half the size, in parts of view Z."}};
+
+/// What guides a blur by halves of iterations, in half of the space
+/// (shaders/lib/denoise/packed_guide.glsl). Absent where host kernels run, which read the guide and
+/// the depth slope as they are.
+struct PackedGuide {
+  std::optional<gpu::ImageRef> surface;
+  std::optional<gpu::ImageRef> slope;  // in parts of view Z
+};
+/// Its images, where shaders need them, for the guide and the slopes of these descriptions.
+PackedGuide declare_packed_guide(gpu::FramePlan& plan, const BufferDescription& guide,
+                                 const BufferDescription& slope,
+                                 gpu::FrameSize size = gpu::each_pixel());
 
 /// What guides the filters of all signals.
 struct Guide {
   gpu::ImageRef surface;       // shaders/lib/denoise/guide.glsl
   gpu::ImageRef reprojection;  // xy: position in the frame before, z: bits of its valid taps, w: 1
                                // where the surface was disoccluded
+  PackedGuide packed;
 };
 
 /// Finds every surface in the frame before (SVGF, section 4.1), within the tolerances of

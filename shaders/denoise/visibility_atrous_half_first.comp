@@ -1,0 +1,5 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define SIGNAL_IN_FLOATS
+#include "lib/denoise/visibility_signal.glsl"
+#include "lib/denoise/atrous_half.glsl"
