@@ -128,18 +128,24 @@ void Session::follow(const std::shared_ptr<Session>& follower, Session& leader) 
 
 void Session::follow_camera(const std::shared_ptr<Session>& follower, Session& source,
                             const std::string& by) {
-  const std::lock_guard lock(source.core_.mutex);
-  source.core_.camera_followers.emplace_back(
-      std::shared_ptr<SessionCore>(follower, &follower->core_));
-  source.core_.lead_camera(by);
+  const std::shared_ptr<SessionCore> core(follower, &follower->core_);
+  const std::uint64_t link = core->renew_camera_link();
+  std::unique_lock lock(source.core_.mutex);
+  source.core_.camera_followers.push_back({.session = core, .link = link});
+  const LedCamera led = source.core_.led_camera();
+  lock.unlock();
+  SessionCore::lead_camera(led, by);
 }
 
-void Session::unfollow_camera(const Session& follower) {
-  const std::lock_guard lock(core_.mutex);
-  std::erase_if(core_.camera_followers, [&](const auto& weak) {
-    const auto core = weak.lock();
-    return !core || core.get() == &follower.core_;
-  });
+void Session::unfollow_camera(Session& follower, Session& source) {
+  {
+    const std::lock_guard lock(source.core_.mutex);
+    std::erase_if(source.core_.camera_followers, [&](const CameraFollower& entry) {
+      const auto core = entry.session.lock();
+      return !core || core.get() == &follower.core_;
+    });
+  }
+  (void)follower.core_.renew_camera_link();
 }
 
 void Session::set_buffers(std::vector<protocol::BufferInfo> buffers) {

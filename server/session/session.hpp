@@ -85,7 +85,7 @@ class Session {
   /// The camera of `follower` is that of `source` from now on, until `unfollow_camera`.
   static void follow_camera(const std::shared_ptr<Session>& follower, Session& source,
                             const std::string& by);
-  void unfollow_camera(const Session& follower);
+  static void unfollow_camera(Session& follower, Session& source);
   /// The session is removed from the registry, though it may still be referenced.
   void end();
   bool ended() const { return ended_; }

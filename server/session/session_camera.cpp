@@ -51,28 +51,41 @@ std::uint64_t SessionCamera::moves() const {
   return core_.shown_camera().moves();
 }
 
-Result<Camera> SessionCamera::set(const protocol::CameraSet& request, const std::string& by) {
-  const std::lock_guard lock(core_.mutex);
+template <class Request, class Change>
+Result<Camera> SessionCamera::move(const Request& request, const std::string& by,
+                                   const Change& change) {
+  std::unique_lock lock(core_.mutex);
   if (const Result<void> loaded = core_.require_shown_scene(); !loaded) return loaded.error();
-  if (const auto meant = core_.require_scene_of(request.scene_rev); !meant) return meant.error();
-  const auto chosen = with_field_of_view(request, core_.settings.lens.sensor_height);
-  if (!chosen) return chosen.error();
-  const auto set = core_.shown_camera().set(*chosen, *core_.shown_scene(), by);
-  if (!set) return set.error();
-  return publish(by);
+  if constexpr (requires { request.scene_rev; }) {
+    if (const auto meant = core_.require_scene_of(request.scene_rev); !meant) return meant.error();
+  }
+  if (const Result<void> moved = change(core_.shown_camera()); !moved) return moved.error();
+  core_.changed();
+  const protocol::CameraChanged message{.camera = core_.camera_message(), .by = by};
+  core_.notify_others_latest<protocol::notifications::camera_changed>(by, message);
+  const LedCamera led = core_.led_camera();
+  lock.unlock();
+  SessionCore::lead_camera(led, by);
+  return message.camera;
+}
+
+Result<Camera> SessionCamera::set(const protocol::CameraSet& request, const std::string& by) {
+  return move(request, by, [&](CameraState& camera) -> Result<void> {
+    const auto chosen = with_field_of_view(request, core_.settings.lens.sensor_height);
+    if (!chosen) return chosen.error();
+    return camera.set(*chosen, *core_.shown_scene(), by);
+  });
 }
 
 Result<Camera> SessionCamera::orbit(const protocol::CameraOrbit& request, const std::string& by) {
-  const std::lock_guard lock(core_.mutex);
-  if (const Result<void> loaded = core_.require_shown_scene(); !loaded) return loaded.error();
-  if (const auto meant = core_.require_scene_of(request.scene_rev); !meant) return meant.error();
-  if (const auto moved = core_.shown_camera().orbit(request, by); !moved) return moved.error();
-  return publish(by);
+  return move(request, by, [&](CameraState& camera) { return camera.orbit(request, by); });
 }
 
 Result<Camera> SessionCamera::fit(const protocol::CameraFit& request, const std::string& by) {
-  const std::lock_guard lock(core_.mutex);
-  if (const Result<void> loaded = core_.require_shown_scene(); !loaded) return loaded.error();
+  return move(request, by, [&](CameraState& camera) { return fit_locked(request, camera); });
+}
+
+Result<void> SessionCamera::fit_locked(const protocol::CameraFit& request, CameraState& camera) {
   const float explode = core_.settings.view.explode;
   scene::Bounds bounds;
   if (request.nodes) {
@@ -85,16 +98,8 @@ Result<Camera> SessionCamera::fit(const protocol::CameraFit& request, const std:
   } else {
     bounds = scene::exploded_bounds(*core_.shown_scene(), explode);
   }
-  core_.shown_camera().fit(bounds, core_.aspect());
-  return publish(by);
-}
-
-Camera SessionCamera::publish(const std::string& by) {
-  core_.changed();
-  const protocol::CameraChanged message{.camera = core_.camera_message(), .by = by};
-  core_.notify_others_latest<protocol::notifications::camera_changed>(by, message);
-  core_.lead_camera(by);
-  return message.camera;
+  camera.fit(bounds, core_.aspect());
+  return {};
 }
 
 protocol::BookmarkList SessionCamera::bookmarks() const {

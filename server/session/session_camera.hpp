@@ -31,7 +31,11 @@ class SessionCamera {
                                                            const std::string& by);
 
  private:
-  protocol::Camera publish(const std::string& by);
+  /// Moves the camera that is shown by `change(camera)`, under the lock, and passes it on.
+  template <class Request, class Change>
+  protocol::Result<protocol::Camera> move(const Request& request, const std::string& by,
+                                          const Change& change);
+  protocol::Result<void> fit_locked(const protocol::CameraFit& request, CameraState& camera);
   /// Changes the bookmarks by `change(scene)`, under the lock. What frames show stays.
   template <class Change>
   protocol::Result<protocol::BookmarkList> change_bookmarks(const std::string& by,

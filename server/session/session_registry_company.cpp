@@ -92,7 +92,7 @@ void SessionRegistry::stop_following_locked(const std::string& viewer) {
   if (found == followed_.end()) return;
   const std::shared_ptr<Session> own = session_of_viewer_locked(viewer);
   const std::shared_ptr<Session> source = session_of_viewer_locked(found->second);
-  if (own && source) source->unfollow_camera(*own);
+  if (own && source) Session::unfollow_camera(*own, *source);
   followed_.erase(found);
 }
 

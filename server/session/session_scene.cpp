@@ -33,7 +33,7 @@ void SessionScene::show(LoadedScene scene, const std::string& by) {
 
 Result<void> SessionScene::show(LoadedScene scene, const protocol::EditDocument& edits,
                                 const std::string& by) {
-  const std::lock_guard lock(core_.mutex);
+  std::unique_lock lock(core_.mutex);
   if (const auto fits = adopt(scene.scene, edits, by); !fits) return fits;
   core_.scene = scene.scene;
   core_.scene_info = describe_scene(scene);
@@ -52,6 +52,8 @@ Result<void> SessionScene::show(LoadedScene scene, const protocol::EditDocument&
   core_.scene_rev = seen_since.value_or(core_.rev);
   core_.notify_others<protocol::notifications::scene_changed>(
       by, {.scene = core_.scene_info, .by = by});
+  lock.unlock();
+  core_.lead_cameras(by);
   return {};
 }
 

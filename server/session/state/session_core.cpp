@@ -69,19 +69,55 @@ void SessionCore::follow(const SessionCore& leader) {
   if (other_scene) scene_rev = rev;
 }
 
-void SessionCore::lead_camera(const std::string& by) {
-  if (shows_first_view()) return;  // others see the scene before
-  for (const auto& weak : camera_followers) {
+LedCamera SessionCore::led_camera() const {
+  if (shows_first_view()) return {};
+  return {.camera = camera,
+          .version = version,
+          .scene_loads = scene_loads,
+          .followers = camera_followers};
+}
+
+void SessionCore::lead_camera(const LedCamera& led, const std::string& by) {
+  for (const auto& [weak, link] : led.followers) {
     const auto follower = weak.lock();
     if (!follower) continue;
-    const std::lock_guard lock(follower->mutex);
-    if (follower->scene != scene) continue;  // a new scene brings both its camera
-    follower->camera.take_over(camera);
-    follower->changed();
-    follower->notify_others_latest<protocol::notifications::camera_changed>(
-        {}, {.camera = follower->camera_message(), .by = by});
-    follower->lead_camera(by);
+    if (const auto passed = follower->take_camera(led, link, by)) lead_camera(*passed, by);
   }
+}
+
+std::optional<LedCamera> SessionCore::take_camera(const LedCamera& led, std::uint64_t link,
+                                                  const std::string& by) {
+  const std::lock_guard lock(mutex);
+  if (link != camera_link.number || led.version <= camera_link.version) return {};
+  if (led.scene_loads != scene_loads) return {};  // lead_cameras comes when both have the newer one
+  camera_link.version = led.version;
+  camera.take_over(led.camera);
+  changed();
+  notify_others_latest<protocol::notifications::camera_changed>(
+      {}, {.camera = camera_message(), .by = by});
+  return led_camera();
+}
+
+void SessionCore::lead_cameras(const std::string& by) const {
+  std::unique_lock lock(mutex);
+  const LedCamera own = led_camera();
+  const auto company = followers;
+  lock.unlock();
+  lead_camera(own, by);
+  for (const auto& weak : company) {
+    const auto follower = weak.lock();
+    if (!follower) continue;
+    std::unique_lock follower_lock(follower->mutex);
+    const LedCamera led = follower->led_camera();
+    follower_lock.unlock();
+    lead_camera(led, by);
+  }
+}
+
+std::uint64_t SessionCore::renew_camera_link() {
+  const std::lock_guard lock(mutex);
+  camera_link = {.number = camera_link.number + 1};
+  return camera_link.number;
 }
 
 void SessionCore::tell_camera(const std::string& by) {

@@ -19,6 +19,7 @@
 #include "session/inspection/measurement_set.hpp"
 #include "session/nodes/node_state.hpp"
 #include "session/state/bookmarks.hpp"
+#include "session/state/camera_following.hpp"
 #include "session/state/camera_state.hpp"
 #include "session/state/capture_queue.hpp"
 #include "session/state/first_view.hpp"
@@ -45,9 +46,10 @@ class Measurements;
 ///
 /// A session may be followed by others, which have its scene, settings and time with a camera of
 /// their own: `changed` and `notify_others` pass changes on to them, under both locks, that of the
-/// leader first. The cameras of these may take over those of others of them or of the leader:
-/// `lead_camera` locks each of these after its own, and SessionRegistry keeps them from closing a
-/// circle.
+/// leader first; a follower leads no one. The cameras of these may take over those of others of
+/// them or of the leader. Who takes over whose changes, so that no order of locks would hold:
+/// `lead_camera` is called with no session's lock, and takes one at a time. A camera therefore
+/// comes with the version that its session had, and no follower goes back to an older one.
 struct SessionCore {
   SessionCore(SessionOptions session_options, std::shared_ptr<WakeEvent> wake_event,
               Measurements* session_measurements);
@@ -58,8 +60,22 @@ struct SessionCore {
   void lead() const;
   /// Takes over what followers share with this session, if it differs; under the leader's lock.
   void follow(const SessionCore& leader);
-  /// Passes the camera on to the sessions that take it over; `by`: the viewer that has moved it.
-  void lead_camera(const std::string& by);
+  /// The camera for those that take it over; for no one while viewers see the scene of
+  /// `first_view`, since others see the one before. Under the lock.
+  LedCamera led_camera() const;
+  /// Passes it on to these, and to those that take over theirs; without any session's lock. `by`:
+  /// the viewer that has moved it.
+  static void lead_camera(const LedCamera& led, const std::string& by);
+  /// Passes on the cameras of this session and of its followers, after all have taken over a scene;
+  /// without any session's lock. What moved while only some had it was not passed on.
+  void lead_cameras(const std::string& by) const;
+  /// Takes over a camera, if the link still holds, the scene is its own and it has no newer one;
+  /// gives what is to be passed on then. Locks.
+  std::optional<LedCamera> take_camera(const LedCamera& led, std::uint64_t link,
+                                       const std::string& by);
+  /// Begins a link, by the number that is returned, or ends the one there is: cameras that others
+  /// bring are not taken any more. Locks.
+  std::uint64_t renew_camera_link();
   /// Everything that a frame depends on.
   RenderState snapshot() const;
   /// Whether viewers see `first_view`. What is for programs shows the session's own scene: steps
@@ -160,7 +176,8 @@ struct SessionCore {
   CaptureQueue captures;
   ReferenceMode reference;
   std::vector<std::weak_ptr<SessionCore>> followers;
-  std::vector<std::weak_ptr<SessionCore>> camera_followers;
+  std::vector<CameraFollower> camera_followers;
+  CameraLink camera_link;
 };
 
 }  // namespace heliograph::session

@@ -1,6 +1,13 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
 #include <map>
+#include <memory>
+#include <random>
+#include <string>
+#include <thread>
+#include <vector>
 
 #include "session/session_registry.hpp"
 #include "tests/unit/session/recording_link.hpp"
@@ -25,10 +32,13 @@ class SessionCompanyTest : public testing::Test {
                                                std::move(pixels));
             },
             [](const Session&) {}) {
-    auto scene = std::make_shared<scene::Scene>();
-    scene->bounds.include(glm::vec3(-1.0f));
-    scene->bounds.include(glm::vec3(1.0f));
-    registry_.main()->scene().show({.name = "box", .scene = scene, .resources = nullptr}, "");
+    scene_->bounds.include(glm::vec3(-1.0f));
+    scene_->bounds.include(glm::vec3(1.0f));
+    show_scene();
+  }
+
+  void show_scene() {
+    registry_.main()->scene().show({.name = "box", .scene = scene_, .resources = nullptr}, "");
   }
 
   static SessionOptions sized(std::string name) {
@@ -68,7 +78,18 @@ class SessionCompanyTest : public testing::Test {
     return registry_.session_of_viewer(viewer)->camera().get()->eye;
   }
 
+  /// Lets each viewer but the first follow another one, so that all have the camera of the first.
+  void follow_first(const std::vector<std::string>& viewers, std::mt19937& random) {
+    registry_.stop_following(viewers.front());
+    for (std::size_t i = 1; i < viewers.size(); ++i) {
+      // Those before follow the first already: no circle closes.
+      const auto followed = registry_.follow(viewers[i], viewers[random() % i]);
+      EXPECT_TRUE(followed) << followed.error().message;
+    }
+  }
+
   std::map<std::string, std::shared_ptr<RecordingLink>> links_;
+  std::shared_ptr<scene::Scene> scene_ = std::make_shared<scene::Scene>();
   SessionRegistry registry_;
 };
 
@@ -157,6 +178,59 @@ TEST_F(SessionCompanyTest, FollowingIsRefusedWhereItCannotBe) {
   ASSERT_TRUE(registry_.follow(ada, eve));
   move(bob, {2, 0, 0});
   EXPECT_EQ(eye_of(ada), (Vec3{2, 0, 0}));
+}
+
+TEST_F(SessionCompanyTest, AFollowerHasTheCameraThatTheSameSceneBringsAgain) {
+  const std::string ada = enter();
+  const std::string bob = enter_detached();
+  const std::string eve = enter_detached();
+  const Vec3 first = eye_of(ada);
+  ASSERT_TRUE(registry_.follow(bob, ada));
+  move(ada, {5, 0, 0});
+  move(eve, {0, 7, 1});
+  show_scene();
+  EXPECT_EQ(eye_of(ada), first);
+  EXPECT_EQ(eye_of(bob), first);
+  EXPECT_EQ(heard(bob, "camera.changed")["camera"]["eye"].get<Vec3>(), first);
+  EXPECT_EQ(eye_of(eve), (Vec3{0, 7, 1})) << "it follows no one";
+}
+
+// The directions of following change while cameras move on other threads, so that with the thread
+// sanitizer also locks that are held over several sessions would be told of.
+TEST_F(SessionCompanyTest, FollowersEndAtTheirLeadersCameraWhateverChangesMeanwhile) {
+  constexpr int rounds = 8;
+  constexpr int threads = 3;
+  constexpr int moves = 60;
+  std::vector<std::string> viewers;
+  for (int i = 0; i < 5; ++i) viewers.push_back(enter_detached());
+  std::mt19937 random(1);
+  for (int round = 0; round < rounds; ++round) {
+    std::shuffle(viewers.begin(), viewers.end(), random);
+    for (const auto& [viewer, link] : links_) link->messages.clear();
+    const std::string leader = viewers.front();
+    registry_.stop_following(leader);
+    std::atomic<int> moving = threads;
+    std::vector<std::thread> movers;
+    for (int thread = 0; thread < threads; ++thread) {
+      movers.emplace_back([this, leader, thread, &moving] {
+        for (int i = 1; i <= moves; ++i) {
+          move(leader, {static_cast<float>(2 + i), static_cast<float>(2 + thread), 3.0f});
+        }
+        --moving;
+      });
+    }
+    do {
+      std::shuffle(viewers.begin() + 1, viewers.end(), random);
+      follow_first(viewers, random);
+    } while (moving > 0);
+    for (std::thread& mover : movers) mover.join();
+    const Vec3 eye = eye_of(leader);
+    for (auto viewer = viewers.begin() + 1; viewer != viewers.end(); ++viewer) {
+      EXPECT_EQ(eye_of(*viewer), eye) << round;
+      EXPECT_EQ(heard(*viewer, "camera.changed")["camera"]["eye"].get<Vec3>(), eye)
+          << "the newest is told last";
+    }
+  }
 }
 
 TEST_F(SessionCompanyTest, FollowingEndsWhenEitherViewerLeavesItsSession) {
