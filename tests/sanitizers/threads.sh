@@ -29,7 +29,6 @@ ninja -C "$folder" -j "$jobs" $targets
 # what ran at the same time, so that one processor suffices.
 processor=$(taskset -cp $$ | sed 's/.*[^0-9]//')
 export HELIOGRAPH_TEST_TIME_FACTOR=10
-export TSAN_OPTIONS="suppressions=$root/tests/sanitizers/threads.supp ${TSAN_OPTIONS:-}"
 # Shared memory is where the sanitizer expects it only if the kernel places it as usual. Containers may not ask for
 # that, and need not where addresses are random by few bits.
 placed="setarch -R"

@@ -7,6 +7,7 @@ import random
 import struct
 import time
 
+from harness.memory import assert_less_memory
 from harness.raw_socket import BINARY, CLOSE, PING, PONG, TEXT, RawSocket, frame
 from harness.server import ServerTestCase
 from harness.viewer import Viewer
@@ -172,7 +173,7 @@ class Framing(ServerTestCase):
             for _ in range(900):
                 raw.send(frame(TEXT, call))
             self.server.wait_for(gone, "the end of the viewer")
-        self.assertLess(self.server.memory_bytes(), 2e9)
+        assert_less_memory(self, self.server.memory_bytes(), 2e9)
 
     async def test_random_bytes_do_not_disturb_a_viewer(self):
         chance = random.Random(7)

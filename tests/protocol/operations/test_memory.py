@@ -1,9 +1,8 @@
 """How much memory the server takes."""
 
-import os
 import re
-import unittest
 
+from harness.memory import compares_memory
 from harness.server import ServerTestCase
 from harness.viewer import Viewer
 
@@ -21,8 +20,8 @@ async def drag(viewer, frames):
         await viewer.next_frame(timeout=60)
 
 
+@compares_memory
 class Memory(ServerTestCase):
-    @unittest.skipIf(os.environ.get("HELIOGRAPH_TEST_PRELOAD"), "sanitizers take memory, too")
     async def test_pixel_of_a_session_takes_little_more_than_a_third_of_a_kibibyte(self):
         async with Viewer(self.server) as viewer:
             await viewer.call("stream.configure", {"width": 64, "height": 64})

@@ -11,6 +11,7 @@ import unittest
 import numpy
 
 from harness.images import decode_png
+from harness.memory import compares_memory
 from harness.models import Model
 
 
@@ -237,6 +238,7 @@ class RenderSets(unittest.TestCase):
         self.assertEqual(self.run_render(*arguments, "--resume")[0], 0)
         self.assertEqual(self.bytes_of("turn_2.png"), before)
 
+    @compares_memory
     def test_frames_of_a_turntable_share_their_memory(self):
         def page_faults(frames):
             with subprocess.Popen(self.command(self.mirror, "-o", "turn.mp4", "--turntable", str(frames), "--width",

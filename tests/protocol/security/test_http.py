@@ -10,6 +10,7 @@ import threading
 import time
 
 from harness.exposition import parse
+from harness.memory import compares_memory
 from harness.raw_socket import TEXT, RawSocket, frame
 from harness.server import TIME_FACTOR, ServerTestCase
 from harness.viewer import Viewer
@@ -85,6 +86,7 @@ class Answers(ServerTestCase):
                 self.assertIn("HTTP", answer["error"]["message"])
             await viewer.call("camera.get")
 
+    @compares_memory
     async def test_large_batches_take_no_more_memory_than_their_answer_may(self):
         self.server.call("stream.configure", {"width": 1920, "height": 1080})
         self.addCleanup(self.server.call, "stream.configure", {"width": 160, "height": 90})

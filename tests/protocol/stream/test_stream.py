@@ -7,6 +7,7 @@ import socket
 import time
 
 from harness.images import decode_jpeg, decode_png, difference
+from harness.memory import assert_less_memory, compares_memory
 from harness.server import CONVERGED_SAMPLES, FEW_SAMPLES, ServerTestCase
 from harness.viewer import FLAG_FIRST_AFTER_DROP, FLAG_KEY, Viewer
 
@@ -207,6 +208,7 @@ class Frames(ServerTestCase):
             self.assertLessEqual({entry["kind"] for entry in stats["passes"]}, {"device", "host"})
 
 
+@compares_memory
 class MemoryUse(ServerTestCase):
     async def test_memory_does_not_grow_with_the_number_of_frames(self):
         for scene in ("furnace", "mirror"):
@@ -372,7 +374,7 @@ class SlowViewers(ServerTestCase):
                     break
             # Encoding is shared, so only the noise of a busy machine is allowed for.
             self.assertGreater(beside, 0.7 * alone)
-            self.assertLess(grown, 20e6)
+            assert_less_memory(self, grown, 20e6)
 
     async def test_viewers_that_vanish_during_a_frame_are_removed(self):
         async with Viewer(self.server) as stays, stays.moving():
