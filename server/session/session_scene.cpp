@@ -97,12 +97,17 @@ void SessionScene::show_first_view(std::shared_ptr<const scene::Scene> scene,
 }
 
 void SessionScene::end_first_view() {
-  const std::lock_guard lock(core_.mutex);
+  std::unique_lock lock(core_.mutex);
   if (!core_.first_view) return;
   core_.camera.take_inputs(core_.first_view->camera);
   core_.first_view.reset();
   core_.changed();
-  if (core_.scene) core_.tell_camera({});
+  if (!core_.scene) return;
+  core_.tell_camera({});
+  // To those that have begun to follow it meanwhile.
+  const LedCamera led = core_.led_camera();
+  lock.unlock();
+  SessionCore::lead_camera(led, {});
 }
 
 void SessionScene::unload(const std::string& by) {

@@ -53,7 +53,7 @@ SHARED_CONSTANT uint rays_per_row = 2097152u;
 // large device once: a group takes as long as all the ways that its rays go, and the pass as long
 // as its slowest group.
 SHARED_CONSTANT uint least_rays_per_group = 8u;
-SHARED_CONSTANT uint spread_groups = 2048u;
+SHARED_CONSTANT uint spread_groups = 1024u;
 
 // How many groups walk the hierarchy for so many rays. Grows with them.
 SHARED_FUNCTION uint tracing_groups(uint rays) {

@@ -38,5 +38,17 @@ TEST(RayGroups, LongStreamsTakeSeveralRows) {
   EXPECT_EQ(count.tracing_groups_z, 1u);
 }
 
+// Kernels that count rays themselves leave the other members as they may be.
+TEST(RayGroups, BothDispatchesHaveAllOfTheirDimensions) {
+  shared::RayCount count{.count = shared::rays_per_group + 1};
+  render::kernels::set_groups(count);
+  EXPECT_EQ(count.groups_x, 2u);
+  EXPECT_EQ(count.groups_y, 1u);
+  EXPECT_EQ(count.groups_z, 1u);
+  EXPECT_EQ(count.tracing_groups_x, shared::tracing_groups(count.count));
+  EXPECT_EQ(count.tracing_groups_y, 1u);
+  EXPECT_EQ(count.tracing_groups_z, 1u);
+}
+
 }  // namespace
 }  // namespace heliograph::tracing

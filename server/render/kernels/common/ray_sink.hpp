@@ -19,7 +19,7 @@ inline void for_each_batch(int count, RangeWork work) {
   for_each_range(count, ray_batch, work);
 }
 
-/// The indirect dispatch that covers a stream, as shaders/lib/rays/ray_stream.glsl leaves it.
+/// The indirect dispatches that cover a stream, as shaders/lib/rays/ray_stream.glsl leaves them.
 inline void set_groups(shared::RayCount& count) {
   const auto cover = [](std::uint32_t groups, std::uint32_t& x, std::uint32_t& y) {
     x = std::min(groups, shared::groups_per_row);
@@ -28,11 +28,12 @@ inline void set_groups(shared::RayCount& count) {
   cover((count.count + shared::rays_per_group - 1) / shared::rays_per_group, count.groups_x,
         count.groups_y);
   cover(shared::tracing_groups(count.count), count.tracing_groups_x, count.tracing_groups_y);
+  count.groups_z = count.tracing_groups_z = 1;
 }
 
 /// Of a stream of so many rays. `blending`: see shared::RayCount.
 inline shared::RayCount full_count(std::uint32_t rays, std::uint32_t blending) {
-  shared::RayCount count{rays, 0, 1, 1, blending, 0, 1, 1};
+  shared::RayCount count{.count = rays, .blending = blending};
   set_groups(count);
   return count;
 }

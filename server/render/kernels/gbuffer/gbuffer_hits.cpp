@@ -97,8 +97,7 @@ void gbuffer_rays(const GBufferRaysJob& job) {
   const Rows rows = job.rows.within(static_cast<int>(frame.extent.y));
   const int above = across * (rows.top / 8);
   const int tiles = across * ((rows.bottom - rows.top + 7) / 8);
-  *job.count = {static_cast<std::uint32_t>(tiles) * 64, 0, 0, 1, 0, 0, 0, 0};
-  set_groups(*job.count);
+  *job.count = full_count(static_cast<std::uint32_t>(tiles) * 64, 0);
   for_each_range(tiles, 8, [&](int first, int last) {
     for (int tile = first; tile < last; ++tile) {
       HWY_DYNAMIC_DISPATCH(make_camera_rays)(frame, above + tile, across, job.rays + 64 * tile);

@@ -299,9 +299,9 @@ void reference_begin(const gpu::HostPass<ReferenceBeginBindings>& job) {
 void reference_bounce(const ReferenceBounceJob& job) {
   // Blended surfaces stop rays that could meet what they look for on a refracted way, too.
   const std::uint32_t by_chance = job.transmits ? 0 : job.blending;
-  *job.shadows.count = {0, 0, 1, 1, job.blending, 0, 0, 0};
+  *job.shadows.count = full_count(0, job.blending);
   for (const auto* const lights : {&job.sky, &job.emissive}) {
-    *lights->count = {0, 0, 1, 1, by_chance, 0, 0, 0};
+    *lights->count = full_count(0, by_chance);
   }
   for_each_batch(static_cast<int>(job.rays.count->count), [&](int first, int last) {
     HWY_DYNAMIC_DISPATCH(bounce_batch)(job, first, last);

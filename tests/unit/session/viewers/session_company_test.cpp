@@ -195,6 +195,18 @@ TEST_F(SessionCompanyTest, AFollowerHasTheCameraThatTheSameSceneBringsAgain) {
   EXPECT_EQ(eye_of(eve), (Vec3{0, 7, 1})) << "it follows no one";
 }
 
+TEST_F(SessionCompanyTest, AFollowerThatBeganDuringAFirstViewHasTheCameraWhenItEnds) {
+  const std::string ada = enter();
+  const std::string bob = enter_detached();
+  move(ada, {5, 0, 0});
+  const Vec3 before = eye_of(bob);
+  registry_.main()->scene().show_first_view(std::make_shared<scene::Scene>(), nullptr, ada);
+  ASSERT_TRUE(registry_.follow(bob, ada));
+  EXPECT_EQ(eye_of(bob), before) << "it does not see the scene that ada sees";
+  registry_.main()->scene().end_first_view();
+  EXPECT_EQ(eye_of(bob), (Vec3{5, 0, 0}));
+}
+
 // The directions of following change while cameras move on other threads, so that with the thread
 // sanitizer also locks that are held over several sessions would be told of.
 TEST_F(SessionCompanyTest, FollowersEndAtTheirLeadersCameraWhateverChangesMeanwhile) {
