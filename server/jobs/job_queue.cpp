@@ -126,9 +126,9 @@ Result<JobInfo> JobQueue::create(const protocol::JobCreate& request) {
     }
     const auto id = store_.create(request, now());
     if (!id) return id.error();
+    queue_event_.notify_all();  // it is rendered, even if what follows fails
     job = *store_.find(*id);
   }
-  queue_event_.notify_all();
   if (listener_) listener_(job);
   return job;
 }
@@ -158,14 +158,12 @@ Result<JobInfo> JobQueue::cancel(const std::string& id) {
       const double time = now();
       store_.end(id, {.state = JobState::canceled, .failures = {}}, time,
                  time + options_.keep_seconds);
+      queue_event_.notify_all();
+      webhook_event_.notify_all();
     }
     job = *store_.find(id);
   }
-  queue_event_.notify_all();
-  if (has_ended(job.state)) {
-    webhook_event_.notify_all();
-    if (listener_) listener_(job);
-  }
+  if (has_ended(job.state) && listener_) listener_(job);
   return job;
 }
 
@@ -201,20 +199,24 @@ bool JobQueue::is_stopping() {
   return stopping_;
 }
 
-/// The next job; where there is none, after a change or when a job expires. Looking and waiting are
-/// one step under the lock: a job that is created between them would wait for the next change.
-std::optional<BegunJob> JobQueue::begin_or_wait() {
+/// Begins the next job; where there is none, waits for a change or until a job expires. Looking and
+/// waiting are one step under the lock: a job that is created between them would wait for the next
+/// change.
+void JobQueue::begin_or_wait() {
   std::unique_lock lock(mutex_);
-  if (stopping_) return std::nullopt;
-  std::optional<BegunJob> job = store_.begin(now());
-  if (job) return job;
+  if (stopping_) return;
+  // What is recorded of a job that an exception leaves, as where memory is exhausted. Made before
+  // the job begins: from then on it has an end.
+  end_ = {.state = JobState::failed,
+          .failures = {{.entry = 0, .scene = {}, .reason = "the server failed; see its log"}}};
+  begun_ = store_.begin(now());
+  if (begun_) return;
   if (const std::optional<double> expiry = store_.next_expiry()) {
     const double seconds = std::clamp(*expiry - now(), 0.0, longest_expiry_wait);
     queue_event_.wait_for(lock, std::chrono::duration<double>(seconds));
   } else {
     queue_event_.wait(lock);
   }
-  return std::nullopt;
 }
 
 void JobQueue::run() {
@@ -222,9 +224,9 @@ void JobQueue::run() {
     try {
       record_end();
       expire();
-      if (const std::optional<BegunJob> job = begin_or_wait()) {
-        announce(job->id);
-        render(*job);
+      begin_or_wait();
+      if (begun_) {
+        render(*begun_);
       } else if (is_stopping()) {
         return;
       }
@@ -247,15 +249,15 @@ void JobQueue::expire() {
 
 /// Where it throws, as while the disk is full, the end is recorded later.
 void JobQueue::record_end() {
-  if (!unrecorded_) return;
-  const std::string id = unrecorded_->first;
+  if (!begun_) return;
+  const std::string id = begun_->id;
   {
     const std::lock_guard lock(mutex_);
     const double time = now();
-    store_.end(id, unrecorded_->second, time, time + options_.keep_seconds);
+    store_.end(id, end_, time, time + options_.keep_seconds);
     to_cancel_.erase(id);
   }
-  unrecorded_.reset();
+  begun_.reset();
   webhook_event_.notify_all();
   announce(id);
 }

@@ -9,7 +9,6 @@
 #include <set>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "jobs/job_store.hpp"
@@ -82,7 +81,7 @@ class JobQueue {
   void run_webhooks();
   void wait_for_webhook(std::unique_lock<std::mutex>& lock);
   bool is_stopping();
-  std::optional<BegunJob> begin_or_wait();
+  void begin_or_wait();
   bool wait(std::condition_variable& event, double seconds);
   void expire();
   void render(const BegunJob& job);
@@ -92,12 +91,15 @@ class JobQueue {
   void take_event(const BegunJob& job, const std::string& line, JobEnd& end);
   void keep_file(const std::string& id, const std::string& name);
   std::string why_to_stop(const std::string& id);
+  void put_back();
   void record_end();
   void announce(const std::string& id);
   std::filesystem::path folder_of(const std::string& id) const;
 
   const QueueOptions options_;
-  std::optional<std::pair<std::string, JobEnd>> unrecorded_;  // of the queue's thread
+  // Of the queue's thread: the job that runs, until its end is recorded, and what that end is.
+  std::optional<BegunJob> begun_;
+  JobEnd end_;
   std::function<void(const protocol::JobInfo&)> listener_;
   std::function<bool()> sessions_move_ = [] { return false; };
   std::mutex mutex_;  // guards what follows

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
+#include <utility>
 
 #include "jobs/checksum.hpp"
 #include "jobs/job_queue.hpp"
@@ -98,17 +99,13 @@ std::vector<std::string> JobQueue::arguments() const {
 
 void JobQueue::render(const BegunJob& job) {
   JobEnd end;
+  bool interrupted = false;
   try {
+    announce(job.id);
     write_manifest(job);
     RenderProcess process(arguments(), folder_of(job.id) / "files");
     follow(job, process, end);
-    bool stopping = false;
-    {
-      const std::lock_guard lock(mutex_);
-      stopping = stopping_;
-      if (stopping_ && process.exit_code() != 0) store_.put_back(job.id);
-    }
-    if (stopping && process.exit_code() != 0) return;
+    interrupted = is_stopping() && process.exit_code() != 0;
     if (end.state != JobState::canceled && end.failures.empty()) {
       end.state = state_of(process.exit_code());
     } else if (end.state != JobState::canceled) {
@@ -128,8 +125,16 @@ void JobQueue::render(const BegunJob& job) {
     end = {.state = JobState::failed,
            .failures = {{.entry = 0, .scene = {}, .reason = failure.what()}}};
   }
-  unrecorded_ = {job.id, std::move(end)};
+  if (interrupted) return put_back();
+  end_ = std::move(end);
   record_end();
+}
+
+/// Where it throws, the next server begins the job again all the same: it was running.
+void JobQueue::put_back() {
+  const BegunJob job = *std::exchange(begun_, std::nullopt);
+  const std::lock_guard lock(mutex_);
+  store_.put_back(job.id);
 }
 
 /// Empty: go on.

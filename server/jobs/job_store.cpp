@@ -255,6 +255,8 @@ std::optional<BegunJob> JobStore::begin(double now) {
     job.id = next.text(0);
     request = next.text(1);
   }
+  // It was written by encode(). Before the job runs: once it does, nothing can fail here.
+  job.entries = protocol::decode<protocol::JobCreate>(*protocol::RawJson::parse(request))->entries;
   database_
       .prepare(
           "UPDATE jobs SET state = 'running', attempts = attempts + 1, started = ?2, "
@@ -263,8 +265,6 @@ std::optional<BegunJob> JobStore::begin(double now) {
       .bind(2, now)
       .run();
   transaction.commit();
-  // It was written by encode().
-  job.entries = protocol::decode<protocol::JobCreate>(*protocol::RawJson::parse(request))->entries;
   return job;
 }
 

@@ -135,8 +135,11 @@ void RenderProcess::reap() {
 }
 
 void RenderProcess::set_paused(bool paused) {
-  if (ended_ || std::exchange(paused_, paused) == paused) return;
-  ::kill(pid_, paused ? SIGTSTP : SIGCONT);
+  if (ended_) return;
+  const bool changes = std::exchange(paused_, paused) != paused;
+  // Again and again: a renderer that handles SIGTSTP while SIGCONT comes stops itself after it.
+  if (!paused) ::kill(pid_, SIGCONT);
+  if (paused && changes) ::kill(pid_, SIGTSTP);
 }
 
 void RenderProcess::interrupt() {

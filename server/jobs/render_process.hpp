@@ -28,7 +28,8 @@ class RenderProcess {
   int exit_code() const { return exit_code_; }
   /// The last lines of its standard error.
   const std::string& errors() const { return errors_; }
-  /// Stops it, or lets it go on; it does not count the time between against its limits.
+  /// Stops it, or continues it; it does not count the time between against its limits. To be told
+  /// several times a second.
   void set_paused(bool paused);
   /// Asks it to end; it goes on if it was paused.
   void interrupt();

@@ -5,6 +5,8 @@
 
 #include <chrono>
 #include <filesystem>
+#include <future>
+#include <new>
 #include <string>
 #include <thread>
 
@@ -52,6 +54,23 @@ TEST_F(IdleQueue, ForgetsAJobWhenItExpires) {
   queue_.start();
   EXPECT_TRUE(forgets(first));
   EXPECT_TRUE(forgets(second));
+}
+
+TEST_F(IdleQueue, AJobWhoseStartCannotBeToldEnds) {
+  std::promise<protocol::JobInfo> ended;
+  queue_.on_change([&](const protocol::JobInfo& job) {
+    if (job.state == protocol::JobState::running) throw std::bad_alloc();
+    if (job.state == protocol::JobState::failed) ended.set_value(job);
+  });
+  const std::string id = create();
+  queue_.start();
+  std::future<protocol::JobInfo> told = ended.get_future();
+  const bool is_told = told.wait_for(30s) == std::future_status::ready;
+  queue_.stop();
+  ASSERT_TRUE(is_told) << "it runs without end";
+  const protocol::JobInfo job = told.get();
+  EXPECT_EQ(job.job, id);
+  EXPECT_EQ(job.failures.size(), 1u);
 }
 
 TEST_F(IdleQueue, EndsWhileItWaitsForAJob) {
