@@ -46,8 +46,9 @@ class FaultyWork:
             if not await is_connected(self.stage.worker):
                 self.stage.worker = None
             await self.stage.connect()
-            if failure := await self.attempt(what, action):
-                self.wrong.append(f"after {what} the same request: {failure}")
+            again = f"after {what} the same request"
+            if failure := await self.attempt(again, action):
+                self.wrong.append(f"{again}: {failure}")
             await asyncio.sleep(PAUSE)
 
     async def attempt(self, what, action):
@@ -56,6 +57,6 @@ class FaultyWork:
             await getattr(self.stage, action)()
         except (Refused, Cut) as failure:
             return repr(failure)
-        except (TimeoutError, asyncio.TimeoutError):
-            self.wrong.append(f"{what}: no answer")
+        except (TimeoutError, asyncio.TimeoutError) as late:
+            self.wrong.append(f"{what}: no answer: {late}")
         return ""

@@ -7,6 +7,7 @@ import http.server
 import io
 import json
 import os
+import signal
 import tempfile
 import threading
 import time
@@ -258,6 +259,22 @@ class RenderersBesideViewers(ServerTestCase):
     def test_a_job_that_begins_while_an_image_moves_waits_at_once(self):
         asyncio.run(self.begin_beside_movement())
 
+    def test_a_renderer_that_stopped_after_it_was_continued_is_continued_again(self):
+        """It stops itself, which may come after the signal that ends a short movement."""
+        asyncio.run(self.stop_a_renderer())
+
+    async def stop_a_renderer(self):
+        client = Client(self.server)
+        job = client.create(slow())
+        await asyncio.to_thread(client.wait, job, "running")
+        await asyncio.sleep(1)  # so that no image moves
+        await self.wait_for_renderer(stopped=False)
+        os.kill(next(iter(renderers(self.server.process.pid))), signal.SIGSTOP)
+        await asyncio.sleep(1)  # so that it has stopped
+        await self.wait_for_renderer(stopped=False)
+        client.request("DELETE", "/api/v1/jobs/" + job["job"])
+        await asyncio.to_thread(client.wait, job, timeout=10)
+
     async def begin_beside_movement(self):
         with tempfile.TemporaryDirectory() as folder, \
                 Server("--jobs", folder, new_session=True) as server:
@@ -288,14 +305,15 @@ class RenderersBesideViewers(ServerTestCase):
 
     async def wait_for_renderer(self, stopped, server=None):
         deadline = time.monotonic() + 15
-        while (states := renderer_states((server or self.server).process.pid)) != [stopped]:
+        pid = (server or self.server).process.pid
+        while (states := list(renderers(pid).values())) != [stopped]:
             self.assertLess(time.monotonic(), deadline, f"renderers are stopped: {states}")
             await asyncio.sleep(0.05)
 
 
-def renderer_states(server):
-    """Of each process that a server has started, whether it is stopped."""
-    states = []
+def renderers(server):
+    """The processes that a server has started, and whether each is stopped."""
+    states = {}
     for process in filter(str.isdigit, os.listdir("/proc")):
         try:
             with open(f"/proc/{process}/stat", encoding="ascii") as file:
@@ -303,7 +321,7 @@ def renderer_states(server):
         except (FileNotFoundError, ProcessLookupError):
             continue
         if int(parent) == server:
-            states.append(state == "T")
+            states[int(process)] = state == "T"
     return states
 
 
