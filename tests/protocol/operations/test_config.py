@@ -3,6 +3,7 @@
 import os
 import tempfile
 import unittest
+import unittest.mock
 
 from test_operations import run
 
@@ -13,6 +14,11 @@ class Config(unittest.TestCase):
     def setUp(self):
         self.folder = tempfile.TemporaryDirectory()
         self.addCleanup(self.folder.cleanup)
+        surroundings = unittest.mock.patch.dict(os.environ)
+        surroundings.start()
+        self.addCleanup(surroundings.stop)
+        # It would come before what the files of the tests say.
+        os.environ.pop("HELIOGRAPH_SCENE_ROOT", None)
 
     def file(self, text, name="heliograph.toml"):
         path = os.path.join(self.folder.name, name)
