@@ -132,9 +132,7 @@ void Session::follow_camera(const std::shared_ptr<Session>& follower, Session& s
   const std::uint64_t link = core->renew_camera_link();
   std::unique_lock lock(source.core_.mutex);
   source.core_.camera_followers.push_back({.session = core, .link = link});
-  const LedCamera led = source.core_.led_camera();
-  lock.unlock();
-  SessionCore::lead_camera(led, by);
+  source.core_.pass_camera_on(std::move(lock), by);
 }
 
 void Session::unfollow_camera(Session& follower, Session& source) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <glm/trigonometric.hpp>
+#include <utility>
 
 #include "protocol/json/json_values.hpp"
 #include "scene/animation/explosion.hpp"
@@ -63,9 +64,7 @@ Result<Camera> SessionCamera::move(const Request& request, const std::string& by
   core_.changed();
   const protocol::CameraChanged message{.camera = core_.camera_message(), .by = by};
   core_.notify_others_latest<protocol::notifications::camera_changed>(by, message);
-  const LedCamera led = core_.led_camera();
-  lock.unlock();
-  SessionCore::lead_camera(led, by);
+  core_.pass_camera_on(std::move(lock), by);
   return message.camera;
 }
 

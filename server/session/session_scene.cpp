@@ -105,9 +105,7 @@ void SessionScene::end_first_view() {
   if (!core_.scene) return;
   core_.tell_camera({});
   // To those that have begun to follow it meanwhile.
-  const LedCamera led = core_.led_camera();
-  lock.unlock();
-  SessionCore::lead_camera(led, {});
+  core_.pass_camera_on(std::move(lock), {});
 }
 
 void SessionScene::unload(const std::string& by) {

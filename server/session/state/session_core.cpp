@@ -98,19 +98,20 @@ std::optional<LedCamera> SessionCore::take_camera(const LedCamera& led, std::uin
   return led_camera();
 }
 
+void SessionCore::pass_camera_on(std::unique_lock<std::mutex> lock, const std::string& by) const {
+  const LedCamera led = led_camera();
+  lock.unlock();
+  lead_camera(led, by);
+}
+
 void SessionCore::lead_cameras(const std::string& by) const {
   std::unique_lock lock(mutex);
-  const LedCamera own = led_camera();
   const auto company = followers;
-  lock.unlock();
-  lead_camera(own, by);
+  pass_camera_on(std::move(lock), by);
   for (const auto& weak : company) {
-    const auto follower = weak.lock();
-    if (!follower) continue;
-    std::unique_lock follower_lock(follower->mutex);
-    const LedCamera led = follower->led_camera();
-    follower_lock.unlock();
-    lead_camera(led, by);
+    if (const auto follower = weak.lock()) {
+      follower->pass_camera_on(std::unique_lock(follower->mutex), by);
+    }
   }
 }
 

@@ -66,6 +66,8 @@ struct SessionCore {
   /// Passes it on to these, and to those that take over theirs; without any session's lock. `by`:
   /// the viewer that has moved it.
   static void lead_camera(const LedCamera& led, const std::string& by);
+  /// Gives up `lock`, this session's, and passes its camera on.
+  void pass_camera_on(std::unique_lock<std::mutex> lock, const std::string& by) const;
   /// Passes on the cameras of this session and of its followers, after all have taken over a scene;
   /// without any session's lock. What moved while only some had it was not passed on.
   void lead_cameras(const std::string& by) const;
