@@ -60,7 +60,8 @@ bool wants_ray(ivec2 pixel) {
 }
 
 void main() {
-  gather_pixel(wants_ray(ivec2(gl_GlobalInvocationID.xy)), ivec2(gl_GlobalInvocationID.xy));
+  ivec2 own = ivec2(gl_GlobalInvocationID.xy);
+  gather_pixel(wants_ray(own), own);
   bool requested = has_gathered_pixel();
   Ray ray;
   if (requested) {

@@ -7,7 +7,6 @@ layout(local_size_x = 16, local_size_y = 16) in;
 #include "lib/math/random.glsl"
 #include "lib/rays/gathered_pixels.glsl"
 #include "lib/rays/ray_stream.glsl"
-#include "lib/rays/sampling_plan.glsl"
 #include "lib/math/geometry.glsl"
 
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D normals;
@@ -18,20 +17,11 @@ layout(set = 1, binding = 4, r32ui) readonly uniform uimage2D planned;  // or an
 layout(set = 1, binding = 5, r32f) writeonly uniform image2D visibility;
 layout(push_constant) uniform Constants { uint by_plan; };
 
-/// What a pixel's visibility is before its ray was traced.
-void leave(ivec2 pixel, float visible) { imageStore(visibility, pixel, vec4(visible)); }
-
-bool wants_ray(ivec2 pixel) {
-  if (outside_frame(pixel)) return false;
-  bool seen = imageLoad(motion, pixel).w > 0.0;
-  bool left_out = seen && by_plan != 0u && (imageLoad(planned, pixel).r & plan_ambient) == 0u;
-  if (seen && !left_out) return true;
-  leave(pixel, left_out ? no_sample : 1.0);
-  return false;
-}
+#include "lib/rays/visibility_pixels.glsl"
 
 void main() {
-  gather_pixel(wants_ray(ivec2(gl_GlobalInvocationID.xy)), ivec2(gl_GlobalInvocationID.xy));
+  ivec2 own = ivec2(gl_GlobalInvocationID.xy);
+  gather_pixel(wants_ray(own, plan_ambient, 1.0), own);
   bool requested = false;
   Ray ray;
   if (has_gathered_pixel()) {

@@ -1,8 +1,8 @@
 // Half of a separable iteration of the a-trous filter (paper section 3.3), across or down: as
 // atrous.glsl, with taps along one axis, whose depths cost less to weigh, and variances of a group
-// read once. GPUs are bound by what they read: keeping taps of both halves in shared memory took
-// longer, since neighbouring groups then filter the same texels. So the guide is packed, and the
-// signal holds 16 bits a channel between the passes of a blur. What a signal is comes from the
+// read once. Keeping taps of both halves in shared memory took longer, since neighbouring groups
+// then filter the same texels. So that taps read less, the guide is packed, and the signal holds
+// 16 bits a channel between the passes of a blur. What a signal is comes from the
 // shader that includes this. It defines SIGNAL_IN_FLOATS where it reads what is blurred, and
 // FILTERED_IN_FLOATS where it writes the result: these hold 32 bits.
 #include "lib/denoise/atrous_taps.glsl"

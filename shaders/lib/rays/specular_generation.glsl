@@ -59,7 +59,8 @@ bool wants_sample(ivec2 cell) {
 }
 
 void main() {
-  gather_pixel(wants_sample(ivec2(gl_GlobalInvocationID.xy)), ivec2(gl_GlobalInvocationID.xy));
+  ivec2 own = ivec2(gl_GlobalInvocationID.xy);
+  gather_pixel(wants_sample(own), own);
   bool requested = false;
   Ray ray;
   if (has_gathered_pixel()) {

@@ -1,7 +1,10 @@
 #include "render/passes/denoise/atrous.hpp"
 
+#include <utility>
+
 #include "render/passes/denoise/denoise_constants.hpp"
 #include "render/passes/formats.hpp"
+#include "shaders/embedded.hpp"
 
 namespace heliograph::render {
 namespace {
@@ -134,6 +137,23 @@ class Blur {
 };
 
 }  // namespace
+
+AtrousConfig radiance_atrous_config(
+    const FrameInputs& in, std::string name, const AtrousBuffers& buffers, int iterations,
+    protocol::BlurKernel shape,
+    std::function<shared::AtrousConstants(const KernelShape&)> constants) {
+  return {
+      std::move(name),
+      buffers,
+      in.program(shaders::specular_atrous),
+      {in.program(shaders::specular_atrous_half_first), in.program(shaders::specular_atrous_half),
+       in.program(shaders::specular_atrous_half_last)},
+      kernels::specular_atrous,
+      kernels::specular_atrous_halves,
+      iterations,
+      shape,
+      std::move(constants)};
+}
 
 gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const AtrousInput& input,
                    const AtrousConfig& config, std::optional<Feedback> feedback) {

@@ -103,6 +103,12 @@ struct AtrousConfig {
   std::uint32_t pixels_per_texel = 1;  // of the images, along each axis
 };
 
+/// A blur of radiance with the variance of its brightness.
+AtrousConfig radiance_atrous_config(
+    const FrameInputs& in, std::string name, const AtrousBuffers& buffers, int iterations,
+    protocol::BlurKernel shape,
+    std::function<shared::AtrousConstants(const KernelShape&)> constants);
+
 /// Gets the result of iteration `level`, for the next frame.
 struct Feedback {
   int level;

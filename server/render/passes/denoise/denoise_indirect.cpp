@@ -17,17 +17,8 @@ AtrousConfig indirect_atrous_config(const FrameInputs& in) {
     made.start_threshold = settings.adapt_start ? -1.0f : 2.0f;
     return made;
   };
-  return {
-      "indirect.atrous",
-      indirect_atrous_buffers,
-      in.program(shaders::specular_atrous),
-      {in.program(shaders::specular_atrous_half_first), in.program(shaders::specular_atrous_half),
-       in.program(shaders::specular_atrous_half_last)},
-      kernels::specular_atrous,
-      kernels::specular_atrous_halves,
-      settings.iterations,
-      settings.kernel,
-      constants};
+  return radiance_atrous_config(in, "indirect.atrous", indirect_atrous_buffers, settings.iterations,
+                                settings.kernel, constants);
 }
 
 /// At the size of `noisy` and of what guides it.

@@ -52,17 +52,8 @@ AtrousConfig specular_atrous_config(const FrameInputs& in) {
     }
     return made;
   };
-  return {
-      "specular.atrous",
-      specular_atrous_buffers,
-      in.program(shaders::specular_atrous),
-      {in.program(shaders::specular_atrous_half_first), in.program(shaders::specular_atrous_half),
-       in.program(shaders::specular_atrous_half_last)},
-      kernels::specular_atrous,
-      kernels::specular_atrous_halves,
-      settings.iterations,
-      settings.kernel,
-      constants};
+  return radiance_atrous_config(in, "specular.atrous", specular_atrous_buffers, settings.iterations,
+                                settings.kernel, constants);
 }
 
 }  // namespace
