@@ -12,8 +12,19 @@ const options = {
   preload: false, // of style sheets and media of other origins
 };
 
+/** Waits until nothing fades in: a half transparent text has less contrast. */
+function animationsEnded(page) {
+  return page.evaluate(() => {
+    const ending = document
+      .getAnimations()
+      .filter(({ effect }) => Number.isFinite(effect.getComputedTiming().endTime));
+    return Promise.allSettled(ending.map(({ finished }) => finished)).then(() => {});
+  });
+}
+
 /** Findings of axe with impact serious or critical, one line each. */
 export async function seriousFindings(page) {
+  await animationsEnded(page);
   if (!(await page.evaluate(() => "axe" in window))) await page.evaluate(axe);
   const { violations } = await page.evaluate((chosen) => window.axe.run(chosen), options);
   return violations
