@@ -3,7 +3,8 @@
 #include "lib/rays/ray_index.glsl"
 layout(local_size_x = 64) in;
 // Adds to blended surfaces the light that has come through them along a ray of each pixel, and
-// empties the image that had it. Rays that met nothing see what the camera sees there.
+// empties the image that had it; or leaves it there for blended_bands.comp. Rays that met nothing
+// see what the camera sees there.
 #include "lib/denoise/moments.glsl"
 #include "lib/lighting/environment.glsl"
 #include "lib/rays/specular_pixels.glsl"
@@ -13,6 +14,7 @@ layout(set = 1, binding = 0, std430) readonly buffer Count { RayCount ray_count;
 layout(set = 1, binding = 1, std430) readonly buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 2, rgba32f) uniform image2D radiance;
 layout(set = 1, binding = 3, rgba32f) uniform image2D specular;  // a: how far the rays went
+layout(push_constant) uniform Constants { uint leaves; };
 
 void main() {
   uint index = ray_index();
@@ -26,7 +28,12 @@ void main() {
     light = enabled(frame_environment_visible) ? weight * environment_background(ray.direction)
                                                : vec3(0.0);
   }
+  light = sanitize(light);
+  if (leaves != 0u) {
+    imageStore(specular, pixel, vec4(light, met.a));
+    return;
+  }
   vec4 sum = imageLoad(radiance, pixel);
-  imageStore(radiance, pixel, vec4(sum.rgb + sanitize(light), sum.a));
+  imageStore(radiance, pixel, vec4(sum.rgb + light, sum.a));
   imageStore(specular, pixel, vec4(0.0));
 }

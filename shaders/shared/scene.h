@@ -153,6 +153,7 @@ SHARED_CONSTANT uint scene_light_grid = 64u;  // has so many punctual lights (li
 SHARED_CONSTANT uint scene_transmits = 128u;  // has surfaces that light passes
 SHARED_CONSTANT uint scene_diffuse_transmits = 256u;  // has surfaces that scatter light to their
                                                       // other side
+SHARED_CONSTANT uint scene_disperses = 512u;  // has volumes that split light into its colours
 
 SHARED_CONSTANT uint light_directional = 0u;
 SHARED_CONSTANT uint light_point = 1u;

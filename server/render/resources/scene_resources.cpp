@@ -232,7 +232,8 @@ void SceneResources::upload_tables(const gpu::Device& device, bool host_kernels,
              (blends ? shared::scene_blends : 0u) |
              (scene->layers.size() > 1 ? shared::scene_layers : 0u) |
              (transmits ? shared::scene_transmits : 0u) |
-             (scene::scatters_through(scene->layers) ? shared::scene_diffuse_transmits : 0u);
+             (scene::scatters_through(scene->layers) ? shared::scene_diffuse_transmits : 0u) |
+             (scene::disperses(scene->layers) ? shared::scene_disperses : 0u);
   layers = upload(device, "material layers",
                   scene->layers.empty() ? std::vector{scene::plain_layer()} : scene->layers);
   rest_tables.lights = make_light_table(device, lights);

@@ -34,11 +34,12 @@ bool bends_light(HitSurface s, Boundary boundary) {
   return s.layer.transmission > 0.0 && s.roughness >= least_blurring_roughness;
 }
 
-/// The band of wavelengths that a pixel's ray has in a volume that splits light into its colours.
+/// The band of wavelengths that a pixel's ray has in a volume that splits light into its colours:
+/// any three pixels in a row or a column have all of them, and so has a pixel in every three frames.
 uint pixel_band(uint medium, ivec2 pixel) {
-  if (layers[medium].dispersion <= 0.0) return 0u;
-  float pick = random_number(uvec2(pixel), frame.sample_index, band_dimension, frame.seed);
-  return 1u + min(uint(pick * 3.0), 2u);
+  if (!scene_has(scene_disperses) || layers[medium].dispersion <= 0.0) return 0u;
+  uint turn = pcg3d(uvec3(frame.sample_index / 3u, band_dimension, frame.seed)).x % 3u;
+  return 1u + (uint(pixel.x + pixel.y) + frame.sample_index % 3u + turn) % 3u;
 }
 
 /// Index of refraction for `band`: 1 red, 2 green, 3 blue, 0 all of them. KHR_materials_dispersion:

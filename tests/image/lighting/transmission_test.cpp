@@ -2,6 +2,7 @@
 // KHR_materials_dispersion, by the path tracer and by the hybrid.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/constants.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -171,6 +172,26 @@ TEST_P(GlassInHybrid, DispersionShiftsColorsApart) {
   const SeenEdge seen = seen_edge(rig, hybrid_from(GetParam()), "dispersing_slab_hybrid");
   EXPECT_NEAR(seen.begins.z - seen.begins.x,
               lateral_shift(slab_ior + 0.0625) - lateral_shift(slab_ior - 0.0625), 0.008);
+}
+
+// A ray has one of three bands of wavelengths; a pixel shows all of them in every frame.
+TEST_P(GlassInHybrid, DispersionLeavesWhiteWallWhiteInOneFrame) {
+  MaterialLayers prism = volume(slab_depth);
+  prism.dispersion = 5.0f;
+  RendererRig rig = slab_before_edge(prism);
+  mean_color(rig, hybrid_from(GetParam()), "dispersing_slab_one_frame", 1);
+  const render::FloatImage radiance = rig.capture("accumulated");
+  std::uint32_t white = 0, pixels = 0;
+  for (std::uint32_t y = 0; y < slab_view; ++y) {
+    for (std::uint32_t x = slab_view * 3 / 4; x < slab_view; ++x) {
+      const glm::vec3 seen = rgb(radiance, x, y);
+      const float least = std::min({seen.x, seen.y, seen.z});
+      white += least > 0.95f * std::max({seen.x, seen.y, seen.z});
+      ++pixels;
+    }
+  }
+  // Elsewhere one of the rays was reflected within the slab.
+  EXPECT_GT(white, pixels / 2);
 }
 
 TEST_P(GlassInHybrid, WithoutRefractionWallShowsStraight) {

@@ -144,10 +144,35 @@ struct BlendedThroughBindings {
   gpu::ReadWrite<Stage> radiance;  // rgba32f
   gpu::ReadWrite<Stage> specular;  // rgba32f; a: how far the rays went
 };
-struct BlendedThroughJob : FrameJob<BlendedThroughBindings> {
+struct BlendedThroughConstants {
+  std::uint32_t leaves;  // 1: the light stays where it is, for blended_bands()
+};
+struct BlendedThroughJob : FrameJob<BlendedThroughBindings, BlendedThroughConstants> {
   RadianceMap background;  // what the camera sees behind the scene
 };
 void blended_through(const BlendedThroughJob& job);
+
+/// shaders/blend/blended_bands.comp
+template <class Stage>
+struct BlendedBandsBindings {
+  RaySource<Stage> rays;
+  gpu::ReadBuffer<Stage, shared::Hit> chosen;  // by pixel
+  gpu::Read<Stage> through;                    // rgba32f; a: 0: no ray
+  gpu::ReadWrite<Stage> radiance;              // rgba32f
+};
+struct BlendedBandsJob : FrameJob<BlendedBandsBindings> {
+  SceneView scene;
+};
+void blended_bands(const BlendedBandsJob& job);
+
+/// shaders/blend/blended_empty.comp
+template <class Stage>
+struct BlendedEmptyBindings {
+  RaySource<Stage> rays;
+  gpu::Write<Stage> emptied;  // rgba32f
+};
+using BlendedEmptyJob = gpu::HostPass<BlendedEmptyBindings>;
+void blended_empty(const BlendedEmptyJob& job);
 
 /// shaders/blend/blended_over.comp
 template <class Stage>

@@ -31,9 +31,14 @@ void through_batch(const BlendedThroughJob& job, int first, int last) {
       light = select(missed, behind, light);
     }
     light = select(is_bad(light), numbers(0.0f), light);
+    const TexelIndices at(pixel);
+    if (job.constants.leaves) {
+      const Texels<4> left(Float4{light.x, light.y, light.z, met.w});
+      for_each_lane(lanes, [&](std::size_t lane) { left.put(job.specular, lane, at); });
+      continue;
+    }
     const Float4 sum = gathered4(job.radiance, pixel);
     const Texels<4> texels(Float4{sum.x + light.x, sum.y + light.y, sum.z + light.z, sum.w});
-    const TexelIndices at(pixel);
     for_each_lane(lanes, [&](std::size_t lane) {
       texels.put(job.radiance, lane, at);
       empty.put(job.specular, lane, at);

@@ -31,6 +31,11 @@ inline bool has_layers(std::uint32_t features) {
   return (features & shared::scene_layers) != 0;
 }
 
+/// Whether a scene with these features may have volumes that split light into its colours.
+inline bool disperses(std::uint32_t features) {
+  return (features & shared::scene_disperses) != 0;
+}
+
 /// Whether a scene with these features may have surfaces that scatter light to their other side.
 inline bool scatters_through(std::uint32_t features) {
   return (features & shared::scene_diffuse_transmits) != 0;

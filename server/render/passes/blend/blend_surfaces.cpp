@@ -196,14 +196,35 @@ class BlendedSurfaces {
     }
     trace_reflections(plan_, in_, "blended.refracted", through.refracted, gbuffer_, to_.surface,
                       to_.transmittance, to_.specular, cache_);
+    const bool splits = kernels::disperses(in_.moving.features_without_emission());
     plan_.pass("blended.through", in_.program(shaders::blended_through))
         .bind<kernels::BlendedThroughBindings>({.rays = ray_source(through.refracted),
                                                 .radiance = to_.radiance,
                                                 .specular = to_.specular})
+        .constants(kernels::BlendedThroughConstants{splits})
         .dispatch_indirect(through.refracted.count, ray_groups_offset)
         .host([in = in_, seen = SeenBackground(in_)](const kernels::BlendedThroughJob::Pass& pass) {
           kernels::blended_through({pass, in.constants, seen.map()});
         });
+    if (splits) share_bands(through.refracted);
+  }
+
+  /// Pixels take the bands of wavelengths that their own rays do not have from their neighbours.
+  void share_bands(const tracing::RayStream& rays) {
+    pass("blended.bands", shaders::blended_bands)
+        .bind<kernels::BlendedBandsBindings>({.rays = ray_source(rays),
+                                              .chosen = to_.chosen,
+                                              .through = to_.specular,
+                                              .radiance = to_.radiance})
+        .dispatch_indirect(rays.count, ray_groups_offset)
+        .host([in = in_](const kernels::BlendedBandsJob::Pass& pass) {
+          kernels::blended_bands(
+              {pass, in.constants, kernels::view_scene(in.scene, in.tables, in.moving)});
+        });
+    plan_.pass("blended.empty", in_.program(shaders::blended_empty))
+        .bind<kernels::BlendedEmptyBindings>({.rays = ray_source(rays), .emptied = to_.specular})
+        .dispatch_indirect(rays.count, ray_groups_offset)
+        .host(kernels::blended_empty);
   }
 
   void cross_boundaries(std::uint32_t round, const tracing::RayStream& inside, gpu::BufferRef hits,

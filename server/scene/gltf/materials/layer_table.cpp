@@ -121,6 +121,11 @@ bool scatters_through(std::span<const shared::MaterialLayer> layers) {
       layers, [](const shared::MaterialLayer& layer) { return layer.diffuse_transmission > 0.0f; });
 }
 
+bool disperses(std::span<const shared::MaterialLayer> layers) {
+  return std::ranges::any_of(
+      layers, [](const shared::MaterialLayer& layer) { return layer.dispersion > 0.0f; });
+}
+
 shared::MaterialLayer layer_of(const shared::Material& material, const MaterialLayers& from) {
   shared::MaterialLayer layer = plain_layer();
   // Exactly 0.04 for the default ior of 1.5.

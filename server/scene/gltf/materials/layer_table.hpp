@@ -15,6 +15,9 @@ bool adds_nothing(const shared::MaterialLayer& layer);
 /// (KHR_materials_diffuse_transmission).
 bool scatters_through(std::span<const shared::MaterialLayer> layers);
 
+/// Whether any of them splits light into its colours.
+bool disperses(std::span<const shared::MaterialLayer> layers);
+
 /// The layer of a material with these extensions. With an alpha mask it transmits nothing but
 /// diffuse light.
 shared::MaterialLayer layer_of(const shared::Material& material, const MaterialLayers& from);

@@ -7,6 +7,7 @@
 #define HELIOGRAPH_KERNELS_TRANSMISSION_HPP
 #endif
 
+#include "render/kernels/common/pixel_band.hpp"
 #include "render/kernels/simd/material/hit_material.hpp"
 #include "render/kernels/simd/material/specular_lobe.hpp"
 #include "render/kernels/simd/random.hpp"
@@ -78,18 +79,20 @@ HWY_INLINE Float dispersion_of(const SceneView& scene, Integer medium) {
 class PixelBands {
  public:
   explicit PixelBands(const shared::FrameConstants& frame)
-      : picks_(unsigned_tag, frame.sample_index, shared::band_dimension, frame.seed) {}
+      : turn_(static_cast<int>(band_turn(frame))) {}
 
   HWY_INLINE Integer at(const SceneView& scene, Integer medium, const PixelLanes& pixel) const {
     const Mask splits = hn::Gt(dispersion_of(scene, medium), zero());
     if (none(splits)) return integer(0);
-    const Float pick = picks_.at(as_unsigned(pixel.x), as_unsigned(pixel.y));
-    const Integer band = hn::Min(truncated(pick * number(3.0f)), integer(2));
-    return hn::IfThenElseZero(integer_mask(splits), hn::Add(band, integer(1)));
+    const Integer sum = hn::Add(hn::Add(pixel.x, pixel.y), integer(turn_));
+    // Half a unit from where rounding would decide.
+    const Integer whole = truncated((to_float(sum) + number(0.5f)) * number(1.0f / 3.0f));
+    const Integer color = hn::Sub(sum, hn::Mul(whole, integer(3)));
+    return hn::IfThenElseZero(integer_mask(splits), hn::Add(color, integer(1)));
   }
 
  private:
-  RandomNumbers<UnsignedTag> picks_;
+  int turn_;
 };
 
 /// `band`: 1 red, 2 green, 3 blue, 0 all of them.
