@@ -274,7 +274,7 @@ void main() {
   for (uint i = thread * share; i < end; ++i) ones += coded_byte(i) == 255u ? 1u : 0u;
   uint all_ones;
   uint to = thread * share + sum_before(thread, ones, all_ones);
-  bool fits = bytes + all_ones <= 4u * jpeg_slot_words;
+  bool fits = bytes + all_ones <= tables.most_interval_bytes;
   if (thread == 0u) lengths[interval] = fits ? bytes + all_ones : jpeg_too_long;
   if (!fits) return;
   for (uint i = thread * share; i < end; ++i, ++to) {

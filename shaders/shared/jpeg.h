@@ -11,7 +11,8 @@ SHARED_CONSTANT uint jpeg_interval_mcus = 4u;  // of each restart interval but t
 SHARED_CONSTANT uint jpeg_interval_blocks = 24u;
 
 // Room for one coded interval. Coefficients of an 8-bit image take some 16 bits each at most, over
-// a whole interval; there are 20 for each. Where they are not enough, the frame has no JPEG.
+// a whole interval; there are 20 for each. Where they are not enough, the frame's pixels come where
+// its JPEG would be.
 SHARED_CONSTANT uint jpeg_slot_words = 960u;
 // In place of the length of an interval that does not fit.
 SHARED_CONSTANT uint jpeg_too_long = 0xffffffffu;
@@ -22,6 +23,8 @@ struct JpegTables {
   uint quantisation[128];  // by the same, at quality 50: of luma, then of chroma
   uint dc_codes[32];       // by category: of luma, then of chroma
   uint ac_codes[512];      // by symbol, likewise
+  // Of a coded interval: a longer one does not fit. No more than a slot has room for.
+  uint most_interval_bytes;
 };
 
 SHARED_END

@@ -95,7 +95,7 @@ class Renderer {
 
   /// The next frames come as such a JPEG where the engine encodes and the output is shown, and with
   /// pixels only where those cost nothing; absent: they come as pixels. So do frames of more than
-  /// 16.8 million pixels that would be made smaller.
+  /// 16.8 million pixels that would be made smaller, and those whose JPEG is too long.
   void request_jpeg(std::optional<JpegRequest> request);
   /// The pixels of the last frame, which came without; empty where a change since has discarded
   /// them, or another frame has begun.

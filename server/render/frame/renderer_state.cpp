@@ -140,7 +140,12 @@ Frame Renderer::State::output(const std::optional<JpegRequest>& made) {
   frame.height = extent.height;
   if (made) frame.jpeg = read_jpeg(compiled->plan, *compiled->encoded, *made);
   // A frame that is canceled, as on processors, leaves none to read later.
-  if (frame.jpeg.bytes.empty() || parts.device.is_cpu()) frame.rgba = compiled->plan.read();
+  if (!made || parts.device.is_cpu()) {
+    frame.rgba = compiled->plan.read();
+  } else if (frame.jpeg.bytes.empty()) {
+    // What the image shows may be the next frame, which has begun.
+    frame.rgba = read_unencoded(compiled->plan, *compiled->encoded);
+  }
   return frame;
 }
 

@@ -228,6 +228,7 @@ bool Broadcast::pump() {
   EncodingPlan plan = session_->viewers().plan(number_, due_purpose_, pixels, device_jpeg(frame));
   if (!suffices(frame, plan) && !take_pixels()) {
     due_.reset();
+    due_samples_ = 0;  // the next frame is sent, however few samples it adds
     return false;
   }
   started_ = number_;

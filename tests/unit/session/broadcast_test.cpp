@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <thread>
+#include <utility>
 
 #include "recording_link.hpp"
 
@@ -210,6 +211,19 @@ TEST_F(BroadcastTest, WaitsForNextFrameWherePixelsAreGone) {
   render();
   ASSERT_TRUE(pump(1));
   EXPECT_EQ(sent("a")->payload, encoded_);
+}
+
+TEST_F(BroadcastTest, SendsTheFrameBehindOneWhosePixelsAreGone) {
+  join("a", 40);
+  render(FramePurpose::refining, 4);
+  const Bytes pixels = std::exchange(pixels_, {});
+  EXPECT_FALSE(pump(0));
+  pixels_ = pixels;
+  render(FramePurpose::refining, 5);
+  ASSERT_TRUE(pump(1)) << "the viewer has none of this state, though samples have not doubled";
+  const stream::SharedFrame frame = sent("a");
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->header.sample_count, 5u);
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "render/passes/jpeg/encode_jpeg.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "protocol/messages/scaled_size.hpp"
@@ -37,12 +38,23 @@ struct JpegJoinBindings {
   gpu::ReadBuffer<Stage, std::uint32_t> lengths;
   gpu::ReadBuffer<Stage, std::uint32_t> places;
   gpu::WriteBuffer<Stage, std::uint32_t> joined;
+  gpu::Read<Stage> shown;
+};
+struct JpegJoinConstants {
+  glm::uvec2 size;
+  std::uint32_t intervals;
 };
 
 constexpr std::uint32_t code_threads = 192;  // of each interval
 constexpr std::uint32_t join_threads = 64;
 constexpr std::uint32_t most_side = 65535;  // of a JPEG
 constexpr std::uint64_t most_scaled_pixels = std::uint64_t{1} << 24;
+constexpr std::uint32_t pixel_bytes = 3;  // of those that come in place of a JPEG
+
+static_assert(pixel_bytes * shared::jpeg_interval_mcus * shared::jpeg_mcu_side *
+                      shared::jpeg_mcu_side <
+                  shared::jpeg_slot_words * sizeof(std::uint32_t),
+              "pixels fit where their coded interval would be");
 
 VkExtent2D encoded_size(VkExtent2D size, int percent) {
   return {protocol::scaled_side(size.width, percent), protocol::scaled_side(size.height, percent)};
@@ -121,9 +133,14 @@ EncodedOutput encode_jpeg(gpu::FramePlan& plan, const Programs& programs, const 
             .constants(used_intervals)
             .dispatch({1, 1});
         plan.pass("jpeg.join", program(shaders::jpeg_join))
-            .bind<JpegJoinBindings>(
-                {.slots = slots, .lengths = lengths, .places = places, .joined = encoded.joined})
-            .constants(used_intervals)
+            .bind<JpegJoinBindings>({.slots = slots,
+                                     .lengths = lengths,
+                                     .places = places,
+                                     .joined = encoded.joined,
+                                     .shown = shown})
+            .constants([size, used_intervals] {
+              return JpegJoinConstants{{size.width, size.height}, used_intervals()};
+            })
             .dispatch({intervals * join_threads, 1});
       });
   return encoded;
@@ -143,6 +160,17 @@ DeviceJpeg read_jpeg(const gpu::FramePlan& plan, const EncodedOutput& encoded,
   jpeg.bytes.assign(header.begin(), header.end());
   jpeg.bytes.insert(jpeg.bytes.end(), coded, coded + length);
   return jpeg;
+}
+
+std::vector<std::uint8_t> read_unencoded(const gpu::FramePlan& plan, const EncodedOutput& encoded) {
+  const std::size_t pixels = std::size_t{encoded.size.width} * encoded.size.height;
+  const auto* const rgb =
+      reinterpret_cast<const std::uint8_t*>(plan.latest(encoded.joined).mapped());
+  std::vector<std::uint8_t> rgba(4 * pixels, 255);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    std::copy_n(rgb + pixel_bytes * i, pixel_bytes, rgba.data() + 4 * i);
+  }
+  return rgba;
 }
 
 }  // namespace heliograph::render

@@ -121,6 +121,7 @@ shared::JpegTables jpeg_tables() {
   write_codes(chroma_dc, tables.dc_codes + 16);
   write_codes(luma_ac, tables.ac_codes);
   write_codes(chroma_ac, tables.ac_codes + 256);
+  tables.most_interval_bytes = shared::jpeg_slot_words * sizeof(std::uint32_t);
   return tables;
 }
 
