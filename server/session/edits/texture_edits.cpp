@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "scene/gltf/materials/texture_kinds.hpp"
+#include "scene/quote.hpp"
 #include "session/edits/edited_parts.hpp"
 
 namespace heliograph::session {
@@ -73,8 +74,8 @@ class Images {
     if (!image) {
       std::vector<std::string_view> names;
       for (const CatalogueEntry& entry : entries_) names.push_back(entry.name);
-      return error::not_found("image",
-                              "is not one of the images" + protocol::suggestion(name, names));
+      return error::not_found("image", scene::in_quotes(name) + " is not one of the images" +
+                                           protocol::suggestion(name, names));
     }
     texture.name = image->name;
     texture.image = image->path;

@@ -28,11 +28,12 @@ LoadedScene SceneCache::shown_copy(const std::shared_ptr<const LoadedScene>& ent
 }
 
 std::optional<LoadedScene> SceneCache::find(const SceneKey& key) {
+  Entries dropped;
   const std::lock_guard lock(mutex_);
   const auto found = std::ranges::find(entries_, key, &Entry::key);
   if (found == entries_.end()) return std::nullopt;
   if (!unchanged(found->sources)) {
-    drop(found);
+    drop(found, dropped);
     return std::nullopt;
   }
   entries_.splice(entries_.end(), entries_, found);
@@ -51,9 +52,10 @@ std::optional<SceneCache::Loaded> SceneCache::find_elsewhere(const SceneKey& key
 
 LoadedScene SceneCache::add(const SceneKey& key, LoadedScene scene,
                             std::vector<scene::SourceFile> sources) {
+  Entries dropped;
   const std::lock_guard lock(mutex_);
   const auto old = std::ranges::find(entries_, key, &Entry::key);
-  if (old != entries_.end()) drop(old);
+  if (old != entries_.end()) drop(old, dropped);
   totals_.bytes += bytes_of(scene);
   entries_.push_back(
       {key, std::make_shared<const LoadedScene>(std::move(scene)), std::move(sources)});
@@ -61,10 +63,11 @@ LoadedScene SceneCache::add(const SceneKey& key, LoadedScene scene,
 }
 
 void SceneCache::clear(std::size_t device) {
+  Entries dropped;
   const std::lock_guard lock(mutex_);
   for (auto entry = entries_.begin(); entry != entries_.end();) {
     const auto next = std::next(entry);
-    if (entry->key.device == device) drop(entry);
+    if (entry->key.device == device) drop(entry, dropped);
     entry = next;
   }
 }
@@ -80,17 +83,18 @@ void SceneCache::count_miss() {
 }
 
 bool SceneCache::trim() {
+  Entries dropped;
   const std::lock_guard lock(mutex_);
   for (auto entry = entries_.begin(); entry != entries_.end();) {
     const auto next = std::next(entry);
     // No request finds it any more.
-    if (!entry->shown() && !unchanged(entry->sources)) drop(entry);
+    if (!entry->shown() && !unchanged(entry->sources)) drop(entry, dropped);
     entry = next;
   }
   for (auto entry = entries_.begin(); entry != entries_.end() && totals_.bytes > max_bytes_;) {
     const auto next = std::next(entry);
     if (!entry->shown()) {
-      drop(entry);
+      drop(entry, dropped);
       ++totals_.evictions;
     }
     entry = next;
@@ -105,10 +109,9 @@ CacheTotals SceneCache::totals() const {
   return totals;
 }
 
-void SceneCache::drop(std::list<Entry>::iterator entry) {
-  const auto dropped = entry->scene;
-  entries_.erase(entry);
-  totals_.bytes -= bytes_of(*dropped);
+void SceneCache::drop(Entries::iterator entry, Entries& dropped) {
+  dropped.splice(dropped.end(), entries_, entry);
+  totals_.bytes -= bytes_of(*entry->scene);
 }
 
 /// What it takes beside the entries, which may have the scene on other devices.

@@ -37,8 +37,8 @@ struct CacheTotals {
 };
 
 /// Least recently used cache of scenes on devices, shared by all sessions that show them. Within
-/// a memory limit it keeps scenes that no session shows; shown ones stay whatever the limit. Thread
-/// safe.
+/// a memory limit it keeps scenes that no session shows; shown ones stay whatever the limit. Calls
+/// that drop scenes free them before they return, without the lock. Thread safe.
 class SceneCache {
  public:
   /// `released`, if any, is notified when a scene is not shown any more.
@@ -75,14 +75,17 @@ class SceneCache {
     bool shown() const { return scene.use_count() > 1; }
   };
 
+  using Entries = std::list<Entry>;
+
   LoadedScene shown_copy(const std::shared_ptr<const LoadedScene>& entry) const;
-  void drop(std::list<Entry>::iterator entry);
+  /// Moves an entry to `dropped`, which callers declare before their lock: it is freed after that.
+  void drop(Entries::iterator entry, Entries& dropped);
   std::uint64_t bytes_of(const LoadedScene& scene) const;
 
   const std::uint64_t max_bytes_;
   const std::shared_ptr<WakeEvent> released_;
   mutable std::mutex mutex_;
-  std::list<Entry> entries_;  // least recently used first
+  Entries entries_;  // least recently used first
   CacheTotals totals_;
 };
 

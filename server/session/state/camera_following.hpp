@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "session/state/camera_state.hpp"
@@ -22,6 +23,8 @@ struct CameraLink {
   std::uint64_t number = 0;
   /// Of the other session, when it had the camera that was taken over last.
   std::uint64_t version = 0;
+  /// How often that camera had jumped; null: none was taken over yet.
+  std::optional<std::uint64_t> discontinuities = std::nullopt;
 };
 
 /// The camera of a session at one of its versions, on its way to those that take it over.

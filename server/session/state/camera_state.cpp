@@ -118,13 +118,14 @@ void CameraState::copy_from(const CameraState& other) {
   camera_ = other.camera_;
   name_ = other.name_;
   fitted_ = other.fitted_;
-  discontinuities_ = other.discontinuities_ + 1;
+  ++discontinuities_;
 }
 
-void CameraState::take_over(const CameraState& other) {
-  if (std::exchange(taken_over_, other.discontinuities_) != other.discontinuities_) {
-    ++discontinuities_;
-  }
+void CameraState::take_over(const CameraState& other, std::optional<std::uint64_t> before) {
+  // A clip may move one that has the name of the scene's, whatever its pose is here.
+  const bool shows_another = !scene::same_view(camera_, other.camera_) || name_ != other.name_;
+  const bool jumped = before ? *before != other.discontinuities_ : shows_another;
+  if (jumped) ++discontinuities_;
   move(other.camera_, other.name_);
   fitted_ = other.fitted_;
 }

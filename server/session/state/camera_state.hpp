@@ -18,8 +18,10 @@ class CameraState {
  public:
   /// Takes over the camera of another session; for this one it is a discontinuity.
   void copy_from(const CameraState& other);
-  /// Shows what the camera of another session shows now; it is a discontinuity where that jumped.
-  void take_over(const CameraState& other);
+  /// Shows what the camera of another session shows now. It is a discontinuity where that jumped
+  /// since it was taken over before, when it had done so `before` times; null: where it is taken
+  /// over for the first time, and this one shows something else.
+  void take_over(const CameraState& other, std::optional<std::uint64_t> before);
   /// The first camera of a new scene, or one that shows all of it. `aspect`: width / height.
   void reset(const scene::Scene& scene, float aspect);
   /// The scene that the camera was named in is gone.
@@ -55,7 +57,6 @@ class CameraState {
   bool fitted_ = false;              // placed to show the whole scene
   std::uint64_t moves_ = 0;
   std::uint64_t discontinuities_ = 0;
-  std::optional<std::uint64_t> taken_over_;  // discontinuities of the camera that was taken over
   std::map<std::string, std::uint32_t> input_seqs_;  // by viewer
 };
 

@@ -91,7 +91,8 @@ std::optional<LedCamera> SessionCore::take_camera(const LedCamera& led, std::uin
   if (link != camera_link.number || led.version <= camera_link.version) return {};
   if (led.scene_loads != scene_loads) return {};  // lead_cameras comes when both have the newer one
   camera_link.version = led.version;
-  camera.take_over(led.camera);
+  camera.take_over(led.camera,
+                   std::exchange(camera_link.discontinuities, led.camera.discontinuities()));
   changed();
   notify_others_latest<protocol::notifications::camera_changed>(
       {}, {.camera = camera_message(), .by = by});

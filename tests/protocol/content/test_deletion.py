@@ -200,9 +200,14 @@ class Deletion(ServerTestCase):
         self.assertEqual(applied["edits"], document, "what is shown needs no file")
         self.assertEqual(self.server.call("edits.get")["edits"]["textures"],
                          [{**slot, "image": "mine"}])
-        others = [*document["textures"], {**slot, "slot": "normal", "image": None}]
-        answer = self.server.ask("edits.apply", {"edits": {**document, "textures": others}})
-        self.assert_error(answer, -32004, path="edits.textures[0].image")
+        other = {**slot, "slot": "normal", "image": None}
+        for number, textures in enumerate(([*document["textures"], other],
+                                           [other, *document["textures"]])):
+            edits = {**document, "textures": textures, "hidden": [0]}
+            answer = self.server.ask("edits.apply", {"edits": edits})
+            self.assert_error(answer, -32004, path=f"edits.textures[{number}].image")
+            self.assertIn('"mine"', answer["error"]["message"])
+            self.assertEqual(self.server.call("edits.get")["edits"], document, "nothing changes")
         answer = self.server.ask("scene.load", {"name": "mirror", "edits": document})
         self.assert_error(answer, -32004, path="edits.textures[0].image")
         self.server.call("textures.set", {**slot, "image": None})

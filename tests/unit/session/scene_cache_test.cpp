@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <functional>
+#include <future>
+
 #include "temporary_folder.hpp"
 
 namespace heliograph::session {
@@ -144,6 +148,36 @@ TEST(SceneCache, TellsWhenASceneIsNotShownAnyMore) {
   EXPECT_TRUE(released->take());
   EXPECT_TRUE(cache.trim());
   EXPECT_EQ(cache.totals().entries, 0u);
+}
+
+/// Whether another thread can use the cache while the scene of the key "a" is freed by `drop`.
+bool is_usable_during(SceneCache& cache, const std::vector<scene::SourceFile>& sources,
+                      const std::function<void()>& drop) {
+  std::future<CacheTotals> asked;  // ends after the scene, which a cache that is locked waits for
+  bool answered = false;
+  LoadedScene scene = scene_of(100);
+  scene.scene = {new scene::Scene, [&](const scene::Scene* freed) {
+                   delete freed;
+                   asked = std::async(std::launch::async, [&] { return cache.totals(); });
+                   answered = asked.wait_for(std::chrono::seconds(5)) == std::future_status::ready;
+                 }};
+  cache.add(key("a"), std::move(scene), sources);
+  drop();
+  return answered && asked.get().bytes == cache.totals().bytes;
+}
+
+TEST(SceneCache, FreesScenesWithoutItsLock) {
+  const test::TemporaryFolder folder;
+  const std::vector sources{scene::examine_file(folder.write("box.glb", "first"))};
+  SceneCache cache(0);
+  EXPECT_TRUE(is_usable_during(cache, {}, [&] { cache.trim(); }));
+  EXPECT_TRUE(is_usable_during(cache, {}, [&] { cache.clear(0); }));
+  EXPECT_TRUE(is_usable_during(cache, {}, [&] { cache.add(key("a"), scene_of(300), {}); }));
+  EXPECT_TRUE(is_usable_during(cache, sources, [&] {
+    folder.write("box.glb", "second");
+    EXPECT_FALSE(cache.find(key("a")));
+  }));
+  EXPECT_EQ(cache.totals().bytes, 0u);
 }
 
 }  // namespace

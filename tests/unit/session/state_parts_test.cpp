@@ -59,6 +59,16 @@ TEST_F(CameraStateTest, JumpsAreDiscontinuitiesAndMovesAreNot) {
   EXPECT_EQ(camera_.discontinuities(), before + 3);
 }
 
+TEST_F(CameraStateTest, ACopyIsADiscontinuityHoweverOftenTheOtherHasJumped) {
+  for (int jumps = 0; jumps < 3; ++jumps) {
+    CameraState other;
+    for (int i = 0; i < jumps; ++i) other.fit(scene_.bounds, 1.0f);
+    const auto before = camera_.discontinuities();
+    camera_.copy_from(other);
+    EXPECT_GT(camera_.discontinuities(), before) << jumps;
+  }
+}
+
 bool is_settable(const scene::Camera& camera) {
   const glm::vec3 limit(protocol::max_coordinate);
   return glm::all(glm::lessThanEqual(glm::abs(camera.eye), limit)) &&

@@ -121,6 +121,17 @@ TEST(TextureEdits, RefusalsNameTheMember) {
   EXPECT_EQ(path(check_slots(*a_room(), document)), "edits.textures[0].material");
 }
 
+TEST(TextureEdits, ADocumentWithAMissingImageNamesTheEntryAndTheImage) {
+  const ImageCatalogue images;
+  protocol::EditDocument document;
+  document.textures = {
+      {"floor", "normal", "bricks"}, {"wall", "normal", {}}, {"wall", "base_color", "gone"}};
+  const auto refused = overrides_of(document, images.get());
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().path, "edits.textures[2].image");
+  EXPECT_NE(refused.error().message.find("\"gone\""), std::string::npos) << refused.error().message;
+}
+
 TEST(TextureEdits, WhatIsShownIsComparedByTheNamesOfItsImages) {
   const auto room = a_room({replaced(0, {"floor", "base_color", "", ""}),
                             replaced(1, {"wall", "normal", "gone", "/gone.png"})});

@@ -29,6 +29,20 @@ class CameraFollowingTest : public testing::Test {
   static void begin(SessionCore& source, const std::shared_ptr<SessionCore>& follower) {
     source.camera_followers = {{.session = follower, .link = follower->renew_camera_link()}};
   }
+  /// Shows a box around the origin: each time it is a jump. `half_width` decides the view.
+  static void jump(SessionCore& core, float half_width) {
+    scene::Bounds bounds;
+    bounds.include(glm::vec3(-half_width));
+    bounds.include(glm::vec3(half_width));
+    core.camera.fit(bounds, 1.0f);
+    core.changed();
+  }
+  /// Passes the camera of `source` on; how often the follower's jumped for it.
+  std::uint64_t jumps_with(const SessionCore& source) const {
+    const std::uint64_t before = follower_->camera.discontinuities();
+    SessionCore::lead_camera(source.led_camera(), "ada");
+    return follower_->camera.discontinuities() - before;
+  }
   /// The leader's camera after a move, which is not passed on yet.
   LedCamera moved(Vec3 eye) {
     EXPECT_TRUE(leader_->camera.set({.eye = eye}, *scene_, "ada"));
@@ -77,6 +91,53 @@ TEST_F(CameraFollowingTest, ALaterLinkTakesWhatTheOneBeforeHadAlready) {
   begin(*leader_, follower_);
   SessionCore::lead_camera(leader_->led_camera(), "ada");
   EXPECT_EQ(eye_of(*follower_), (Vec3{2, 3, 4}));
+}
+
+TEST_F(CameraFollowingTest, AJumpOfTheFollowedCameraIsOneAndAMoveIsNot) {
+  jump(*leader_, 1.0f);
+  EXPECT_EQ(jumps_with(*leader_), 1u);
+  (void)moved({2, 3, 4});
+  EXPECT_EQ(jumps_with(*leader_), 0u);
+  jump(*leader_, 1.0f);
+  jump(*leader_, 2.0f);
+  EXPECT_EQ(jumps_with(*leader_), 1u);
+}
+
+TEST_F(CameraFollowingTest, TheFirstCameraOfAnotherLeaderJumpsWhereItShowsSomethingElse) {
+  const std::shared_ptr<SessionCore> other = made_core();
+  other->scene = scene_;
+  jump(*leader_, 1.0f);
+  (void)jumps_with(*leader_);
+  jump(*other, 2.0f);
+  ASSERT_EQ(other->camera.discontinuities(), leader_->camera.discontinuities());
+  begin(*other, follower_);
+  EXPECT_EQ(jumps_with(*other), 1u) << "as often as the one before has";
+  begin(*leader_, follower_);
+  EXPECT_EQ(jumps_with(*leader_), 1u);
+  EXPECT_EQ(jumps_with(*leader_), 0u);
+}
+
+TEST_F(CameraFollowingTest, TheFirstCameraOfAnotherLeaderIsNoJumpWhereItShowsTheSame) {
+  const std::shared_ptr<SessionCore> other = made_core();
+  other->scene = scene_;
+  jump(*leader_, 1.0f);
+  (void)jumps_with(*leader_);
+  jump(*other, 2.0f);
+  jump(*other, 1.0f);
+  ASSERT_NE(other->camera.discontinuities(), leader_->camera.discontinuities());
+  begin(*other, follower_);
+  EXPECT_EQ(jumps_with(*other), 0u);
+  jump(*other, 2.0f);
+  EXPECT_EQ(jumps_with(*other), 1u) << "its jumps are counted from now on";
+}
+
+TEST_F(CameraFollowingTest, TheSameLeaderFollowedAgainJumpsBackFromWhatWasShownMeanwhile) {
+  jump(*leader_, 1.0f);
+  (void)jumps_with(*leader_);
+  (void)follower_->renew_camera_link();
+  ASSERT_TRUE(follower_->camera.set({.eye = Vec3{9, 9, 9}}, *scene_, "bob"));
+  begin(*leader_, follower_);
+  EXPECT_EQ(jumps_with(*leader_), 1u) << "though that camera has not jumped";
 }
 
 TEST_F(CameraFollowingTest, ACameraInASceneThatComesLaterIsTakenOverWhenBothHaveIt) {
