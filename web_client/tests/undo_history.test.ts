@@ -27,7 +27,7 @@ function numbers() {
   return { values, history, change, wait: (ms: number) => (now += ms) };
 }
 
-test("a drag is one step, another value is another, and steps have names", () => {
+test("a drag is one step, another value is another, and steps have names", async () => {
   const { values, history, change, wait } = numbers();
   for (const value of [1, 2, 3]) {
     change("exposure", value);
@@ -35,12 +35,12 @@ test("a drag is one step, another value is another, and steps have names", () =>
   }
   change("sun", 5);
   assert.deepEqual(history.next.value, { undo: "sun", redo: null });
-  assert.equal(history.undo(), "sun");
+  assert.equal(await history.undo(), "sun");
   assert.deepEqual(history.next.value, { undo: "exposure", redo: "sun" });
-  assert.equal(history.undo(), "exposure");
+  assert.equal(await history.undo(), "exposure");
   assert.deepEqual(values, { exposure: 0, sun: 0 });
-  assert.equal(history.undo(), null);
-  assert.equal(history.redo(), "exposure");
+  assert.equal(await history.undo(), null);
+  assert.equal(await history.redo(), "exposure");
   assert.equal(values.exposure, 3);
   wait(100);
   change("exposure", 9);
@@ -66,7 +66,7 @@ test("a movement is one step on a slow page, too, and the next one is another", 
   assert.equal(values.camera, 3, "what was redone is complete");
 });
 
-test("what was undone before a scene was seen that does not stay can be done again", () => {
+test("what was undone before a scene was seen that does not stay can be done again", async () => {
   const { values, history, change } = numbers();
   change("sun", 5, true);
   history.undo();
@@ -81,17 +81,17 @@ test("what was undone before a scene was seen that does not stay can be done aga
   history.leaveScene();
   history.undo();
   assert.equal(values.exposure, 0, "settings stay whatever is seen");
-  assert.equal(history.undo(), "sun");
+  assert.equal(await history.undo(), "sun");
 });
 
-test("steps in a scene that another viewer loads stay, those of the one before do not", () => {
+test("steps in a scene that another viewer loads stay, those of the one before do not", async () => {
   const { history, change } = numbers();
   change("sun", 5, true);
   history.enterScene();
   change("camera", 3, true);
   history.dropScene();
-  assert.equal(history.undo(), "camera");
-  assert.equal(history.undo(), null);
+  assert.equal(await history.undo(), "camera");
+  assert.equal(await history.undo(), null);
 });
 
 test("steps in a scene are void when another viewer loads another scene", () => {
@@ -204,4 +204,103 @@ test("undo that waits is dropped with the history", async () => {
   change("exposure", 1);
   await ended;
   assert.equal(values.exposure, 1);
+});
+
+/** A history with the step "sun" and, on it, "texture", whose undo and redo the server answers. */
+function withAnsweredStep() {
+  const { history, change, values } = numbers();
+  const asked: ReturnType<typeof pendingChange<boolean>>[] = [];
+  const ask = (): Promise<boolean> => {
+    asked.push(pendingChange<boolean>());
+    return asked.at(-1)!.change;
+  };
+  change("sun", 5);
+  history.add({ label: "texture", key: "texture", ofScene: true, undo: ask, redo: ask });
+  return { history, change, values, asked };
+}
+
+test("undo and redo are told when the server has taken them", async () => {
+  const { history, asked } = withAnsweredStep();
+  let told: string | null = null;
+  const undone = history.undo().then((label) => (told = label));
+  await Promise.resolve();
+  assert.equal(told, null);
+  assert.deepEqual(history.next.value, { undo: "sun", redo: "texture" });
+  asked[0]!.answer(true);
+  assert.equal(await undone, "texture");
+  const redone = history.redo();
+  asked[1]!.answer(true);
+  assert.equal(await redone, "texture");
+});
+
+test("undo that the server refuses is none: the step can be undone again", async () => {
+  const { history, asked } = withAnsweredStep();
+  const refused = history.undo();
+  asked[0]!.answer(false);
+  assert.equal(await refused, null);
+  assert.deepEqual(history.next.value, { undo: "texture", redo: null });
+  const taken = history.undo();
+  asked[1]!.answer(true);
+  assert.equal(await taken, "texture");
+  assert.deepEqual(history.next.value, { undo: "sun", redo: "texture" });
+  const redo = history.redo();
+  asked[2]!.answer(false);
+  assert.equal(await redo, null);
+  assert.deepEqual(history.next.value, { undo: "sun", redo: "texture" });
+});
+
+test("a step whose undo is refused once more does not bar those before it", async () => {
+  const { history, asked } = withAnsweredStep();
+  for (const number of [0, 1]) {
+    const refused = history.undo();
+    asked[number]!.answer(false);
+    assert.equal(await refused, null);
+  }
+  assert.equal(await history.undo(), "sun");
+  assert.deepEqual(history.next.value, { undo: null, redo: "sun" });
+});
+
+test("undo that is refused late goes back below what was changed since", async () => {
+  const { history, change, values, asked } = withAnsweredStep();
+  const refused = history.undo();
+  change("exposure", 2);
+  asked[0]!.answer(false);
+  await refused;
+  assert.equal(await history.undo(), "exposure");
+  assert.deepEqual(history.next.value, { undo: "texture", redo: "exposure" });
+  assert.deepEqual(values, { sun: 5, exposure: 0 });
+});
+
+test("redo that is refused after another change is gone", async () => {
+  const { history, change, asked } = withAnsweredStep();
+  const undone = history.undo();
+  asked[0]!.answer(true);
+  await undone;
+  const refused = history.redo();
+  change("exposure", 2);
+  asked[1]!.answer(false);
+  assert.equal(await refused, null);
+  assert.deepEqual(history.next.value, { undo: "exposure", redo: null });
+  await history.undo();
+  assert.equal(history.next.value.undo, "sun");
+});
+
+test("a step in a scene that is gone does not come back when its undo is refused", async () => {
+  const { history, asked } = withAnsweredStep();
+  const refused = history.undo();
+  history.dropScene();
+  asked[0]!.answer(false);
+  assert.equal(await refused, null);
+  assert.deepEqual(history.next.value, { undo: "sun", redo: null });
+});
+
+test("undo that is redone before its refusal stays done", async () => {
+  const { history, asked } = withAnsweredStep();
+  const refused = history.undo();
+  const redone = history.redo();
+  asked[0]!.answer(false);
+  asked[1]!.answer(true);
+  assert.equal(await refused, null);
+  assert.equal(await redone, "texture");
+  assert.deepEqual(history.next.value, { undo: "texture", redo: null });
 });

@@ -56,8 +56,8 @@ export class NodeStore {
       label: visible ? `${name} shown` : `${name} hidden`,
       key: `visible ${changed.join()} ${visible}`,
       ofScene: true,
-      undo: () => void this.patch(changed, !visible),
-      redo: () => void this.patch(changed, visible),
+      undo: () => this.patch(changed, !visible),
+      redo: () => this.patch(changed, visible),
     });
     void this.patch(changed, visible);
   }
@@ -69,8 +69,8 @@ export class NodeStore {
       label: nodes.length > 0 ? `${this.describe(nodes)} isolated` : "isolation ended",
       key: `isolate ${nodes.join()}`,
       ofScene: true,
-      undo: () => void this.sendIsolated(before),
-      redo: () => void this.sendIsolated(nodes),
+      undo: () => this.sendIsolated(before),
+      redo: () => this.sendIsolated(nodes),
     });
     void this.sendIsolated(nodes);
   }
@@ -105,15 +105,15 @@ export class NodeStore {
     }
   }
 
-  private async patch(nodes: readonly number[], visible: boolean): Promise<void> {
-    await this.attempt(async () => {
+  private patch(nodes: readonly number[], visible: boolean): Promise<boolean> {
+    return this.attempt(async () => {
       const request = { nodes: [...nodes], patch: { visible } };
       this.takeVisibility(await this.host.rpc.request("nodes.patch", request));
     });
   }
 
-  private async sendIsolated(nodes: readonly number[]): Promise<void> {
-    await this.attempt(async () => {
+  private sendIsolated(nodes: readonly number[]): Promise<boolean> {
+    return this.attempt(async () => {
       this.takeVisibility(await this.host.rpc.request("nodes.isolate", { nodes: [...nodes] }));
     });
   }
@@ -170,11 +170,14 @@ export class NodeStore {
     });
   }
 
-  private async attempt(action: () => Promise<void>): Promise<void> {
+  /** Whether the server answers without an error. */
+  private async attempt(action: () => Promise<void>): Promise<boolean> {
     try {
       await action();
+      return true;
     } catch (error) {
       if (!(error instanceof ChannelClosed)) this.host.report(error);
+      return false;
     }
   }
 }

@@ -106,8 +106,8 @@ export class SceneParts {
       label: `add ${light.name}`,
       key: `add ${light.name}`,
       ofScene: true,
-      undo: () => void this.sendRemoval(light.name),
-      redo: () => void this.sendLight(again),
+      undo: () => this.sendRemoval(light.name),
+      redo: async () => (await this.sendLight(again)) !== null,
     });
     return light.name;
   }
@@ -119,8 +119,8 @@ export class SceneParts {
       label: `remove ${name}`,
       key: `remove ${name}`,
       ofScene: true,
-      undo: () => void this.sendLight(addRequest(light)),
-      redo: () => void this.sendRemoval(name),
+      undo: async () => (await this.sendLight(addRequest(light))) !== null,
+      redo: () => this.sendRemoval(name),
     });
     return true;
   }
@@ -137,8 +137,8 @@ export class SceneParts {
       label: "opened edits",
       key: "opened edits",
       ofScene: true,
-      undo: () => void this.sendEdits(before),
-      redo: () => void this.sendEdits(edits),
+      undo: () => this.sendEdits(before),
+      redo: () => this.sendEdits(edits),
     });
     return true;
   }
@@ -192,8 +192,8 @@ export class SceneParts {
     this.host.history.add({
       label: "environment",
       key: `environment ${name}`,
-      undo: () => void this.setEnvironment(before),
-      redo: () => void this.setEnvironment(name),
+      undo: () => this.setEnvironment(before),
+      redo: () => this.setEnvironment(name),
     });
     void this.setEnvironment(name);
   }
@@ -204,7 +204,8 @@ export class SceneParts {
     else this.chooseEnvironment(name);
   }
 
-  private async setEnvironment(name: string | null): Promise<void> {
+  /** Whether the server takes it. */
+  private async setEnvironment(name: string | null): Promise<boolean> {
     const { loading, rpc } = this.host;
     const shown = name ?? "the scene's environment";
     loading.start({ kind: "environment", name: shown, stage: "loading", fraction: 0, by: "" });
@@ -212,10 +213,12 @@ export class SceneParts {
       const state = await rpc.request("environment.set", { name }, loadTimeoutMs);
       this.environment.set(state);
       loading.takesEffect(state.rev);
+      return true;
     } catch (error) {
       loading.end();
       this.host.report(error);
       if (!(error instanceof ChannelClosed)) await this.read();
+      return false;
     }
   }
 

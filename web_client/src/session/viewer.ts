@@ -315,12 +315,13 @@ export class Viewer {
     this.takeStep("Redo", "Done again", () => this.history.redo());
   }
 
-  private takeStep(name: string, past: string, step: () => string | null): void {
+  private takeStep(name: string, past: string, step: () => Promise<string | null>): void {
+    const take = async (): Promise<void> => {
+      const label = this.hello && this.mayChange ? await step() : null;
+      if (label) this.onInfo(`${past}: ${label}`, "history");
+    };
     this.history.whenKnown(
-      () => {
-        const label = this.hello && this.mayChange ? step() : null;
-        if (label) this.onInfo(`${past}: ${label}`, "history");
-      },
+      () => void take(),
       () => this.onInfo(`${name} waits for the server's answer`, "history"),
     );
   }

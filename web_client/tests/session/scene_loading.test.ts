@@ -70,7 +70,7 @@ function entering() {
       label,
       key: "camera",
       ofScene: true,
-      undo: () => undone.push(label),
+      undo: () => void undone.push(label),
       redo: () => {},
     });
   move("in hall");
@@ -81,16 +81,16 @@ function entering() {
 
 test("steps of the scene before cannot be undone while another one is seen", async () => {
   const { history, loading, answer, loaded, move, undone } = entering();
-  assert.equal(history.undo(), null);
+  assert.equal(await history.undo(), null);
   assert.deepEqual(history.next.value, { undo: null, redo: null });
   assert.equal(loading.seesAnother, true);
   move("in garden");
   assert.equal(history.next.value.undo, "in garden");
   answer.resolve?.();
   await loaded;
-  assert.equal(history.undo(), "in garden");
-  assert.equal(history.undo(), "scene garden");
-  assert.equal(history.undo(), "in hall");
+  assert.equal(await history.undo(), "in garden");
+  assert.equal(await history.undo(), "scene garden");
+  assert.equal(await history.undo(), "in hall");
   assert.deepEqual(undone, ["in garden", "to hall", "in hall"]);
 });
 
@@ -104,4 +104,15 @@ test("steps in a scene that does not arrive are gone", async () => {
   assert.deepEqual(history.next.value, { undo: "in hall", redo: null });
   history.undo();
   assert.deepEqual(undone, ["in hall"]);
+});
+
+test("a scene that cannot be loaded again is not told as done again", async () => {
+  const { history, loaded, answer } = entering();
+  answer.resolve?.();
+  await loaded;
+  await history.undo();
+  const redone = history.redo();
+  answer.reject?.(new Error("deleted"));
+  assert.equal(await redone, null);
+  assert.deepEqual(history.next.value, { undo: "in hall", redo: "scene garden" });
 });

@@ -1,5 +1,6 @@
 import assert from "node:assert/strict";
 import test from "node:test";
+import { RpcError } from "heliograph/rpc.ts";
 import { Signal } from "../../src/common/signal.ts";
 import { optionsOf } from "../../src/panel/scene/texture_rows.ts";
 import { UndoHistory } from "../../src/session/history/undo_history.ts";
@@ -16,7 +17,8 @@ const planks: Texture = {
 };
 
 /** A server with one texture, that answers as it is told. */
-function serve(refuses = false) {
+function serve(refused: Error | null = null) {
+  let refusal = refused;
   const calls: [string, unknown][] = [];
   let texture = planks;
   const request = (method: string, params: Record<string, unknown> = {}): Promise<unknown> => {
@@ -24,7 +26,7 @@ function serve(refuses = false) {
       return Promise.resolve({ slots: ["base_color"], textures: [texture], rev: 1, images: [] });
     }
     calls.push([method, params]);
-    if (refuses) return Promise.reject(new Error("refused"));
+    if (refusal) return Promise.reject(refusal);
     const { image, removed } = params as { image?: string | null; removed?: boolean };
     texture = { ...planks, removed: removed ?? false, ...(image ? { image } : {}) };
     return Promise.resolve({ texture, rev: 2 });
@@ -45,7 +47,8 @@ function serve(refuses = false) {
     report: (error) => errors.push(error),
     changed: () => loading.push("materials"),
   });
-  return { textures, calls, loading, errors, history };
+  const refuse = (error: Error | null): void => void (refusal = error);
+  return { textures, calls, loading, errors, history, refuse };
 }
 
 const settled = (): Promise<void> => new Promise((resolve) => setTimeout(resolve));
@@ -67,12 +70,45 @@ test("a texture is replaced, and undo brings the file's back", async () => {
 });
 
 test("a change that the server refuses is told and no step of the history", async () => {
-  const { textures, loading, errors, history } = serve(true);
+  const { textures, loading, errors, history } = serve(new Error("refused"));
   await settled();
   assert.equal(await textures.choose("floor", "base_color", { removed: true }), false);
   assert.equal(errors.length, 1);
   assert.equal(loading.at(-1), "end");
   assert.equal(history.next.value.undo, null);
+});
+
+test("undo that the server refuses is told as an error, and can be tried again", async () => {
+  const { textures, errors, history, refuse } = serve();
+  await settled();
+  await textures.choose("floor", "base_color", { image: "moss" });
+  await textures.choose("floor", "base_color", { image: "bricks" });
+  const label = "base color texture of floor";
+  const gone = new RpcError(-32004, 'image: "moss" is not one of the images', { path: "image" });
+  refuse(gone);
+  assert.equal(await history.undo(), null);
+  assert.deepEqual(errors, [gone]);
+  assert.deepEqual(history.next.value, { undo: label, redo: null });
+  assert.equal(textures.find("floor", "base_color")?.image, "bricks");
+  refuse(null);
+  assert.equal(await history.undo(), label);
+  assert.equal(textures.find("floor", "base_color")?.image, "moss");
+  refuse(gone);
+  assert.equal(await history.redo(), null);
+  assert.deepEqual(history.next.value, { undo: label, redo: label });
+});
+
+test("what a later load has replaced is no error, a scene that is another by now is", async () => {
+  const { textures, errors, refuse } = serve();
+  await settled();
+  for (const path of ["image", "scene"]) {
+    refuse(new RpcError(-32009, path, { path }));
+    assert.equal(await textures.choose("floor", "base_color", { removed: true }), false);
+  }
+  assert.deepEqual(
+    errors.map((error) => (error as Error).message),
+    ["scene"],
+  );
 });
 
 test("what a slot has is told in words and can be chosen again", () => {

@@ -106,7 +106,7 @@ test("undo takes a clear coat back to the file's, redo puts it on again", async 
   await settled();
   parts.patchMaterial("paint", { clearcoat: 0.5 });
   await settled();
-  assert.equal(history.undo(), "clearcoat of paint");
+  assert.equal(await history.undo(), "clearcoat of paint");
   await settled();
   assert.equal(parts.materials.value[0]?.clearcoat, 0);
   history.redo();

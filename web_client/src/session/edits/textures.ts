@@ -83,8 +83,8 @@ export class Textures {
       label,
       key: `${label} ${JSON.stringify(choice)}`,
       ofScene: true,
-      undo: () => void this.send(material, slot, before),
-      redo: () => void this.send(material, slot, choice),
+      undo: () => this.send(material, slot, before),
+      redo: () => this.send(material, slot, choice),
     });
     return true;
   }
@@ -136,14 +136,18 @@ export class Textures {
       return true;
     } catch (error) {
       loading.endTexture();
-      // What a later load has replaced is no error.
-      const replaced = error instanceof RpcError && error.code === ErrorCode.conflict;
-      if (!replaced) this.host.report(error);
+      if (!isReplaced(error)) this.host.report(error);
       return false;
     } finally {
       await this.read();
     }
   }
+}
+
+/** What a later load has replaced is no error; a scene whose file is another by now is one. */
+function isReplaced(error: unknown): boolean {
+  if (!(error instanceof RpcError)) return false;
+  return error.code === ErrorCode.conflict && error.data.path !== "scene";
 }
 
 interface Slot {

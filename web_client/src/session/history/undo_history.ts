@@ -3,7 +3,7 @@
 
 import { Signal } from "../../common/signal.ts";
 
-interface Step {
+export interface Step {
   /** What was changed, as in "Undo: exposure". */
   label: string;
   /** Steps in quick succession with the same key are one. */
@@ -12,8 +12,16 @@ interface Step {
   movement?: number | undefined;
   /** It concerns the content of a scene and is void when another viewer loads another one. */
   ofScene?: boolean;
-  undo(): void;
-  redo(): void;
+  /** False where the server refuses it, which is told. Without a result it is taken as done. */
+  undo(): void | Promise<boolean>;
+  redo(): void | Promise<boolean>;
+}
+
+interface Entry extends Step {
+  /** When it was added or continued, in milliseconds; -Infinity: nothing continues it. */
+  at: number;
+  /** Whether the server has refused its undo or redo the last time. */
+  refused: boolean;
 }
 
 /** The labels of the next steps; null where there is none. */
@@ -25,6 +33,20 @@ interface NextSteps {
 /** Whether it outlives its scene. */
 function stays({ ofScene }: Step): boolean {
   return !ofScene;
+}
+
+/** Whether the server has taken an undo or redo; waits for its answer. */
+async function takes(step: Entry, answer: void | Promise<boolean>): Promise<boolean> {
+  const taken = (await answer) !== false;
+  if (taken) step.refused = false;
+  return taken;
+}
+
+/** Whether a step that was refused may be tried again. */
+function comesAgain(step: Entry): boolean {
+  const first = !step.refused;
+  step.refused = true;
+  return first;
 }
 
 /** Undo or redo that was asked for while changes were without an answer. */
@@ -43,10 +65,13 @@ const maxSteps = 200;
 
 export class UndoHistory {
   readonly next = new Signal<NextSteps>({ undo: null, redo: null });
-  private done: (Step & { at: number })[] = [];
-  private undone: Step[] = [];
+  private done: Entry[] = [];
+  private undone: Entry[] = [];
   /** While a scene is seen that may not stay: what was done and undone before it. */
-  private before: { done: number; undone: Step[] } | null = null;
+  private before: { done: number; undone: Entry[] } | null = null;
+  /** How often the scene was another one, or the history was cleared. */
+  private scenes = 0;
+  private additions = 0;
   /** Changes that the server has not answered: each may still add a step. */
   private readonly unanswered = new Set<Promise<unknown>>();
   private waiting: Waiting | null = null;
@@ -91,40 +116,60 @@ export class UndoHistory {
     const at = this.clock();
     const last = this.reachable ? this.done[this.done.length - 1] : undefined;
     this.undone = [];
+    this.additions += 1;
     const continues = step.movement !== undefined && step.movement === last?.movement;
     if (last && last.key === step.key && (continues || at - last.at < mergeWithinMs)) {
       last.redo = step.redo;
       last.at = at;
       last.movement = step.movement;
     } else {
-      this.done.push({ ...step, at });
+      this.done.push({ ...step, at, refused: false });
       if (this.done.length > maxSteps) this.dropOldest();
     }
     this.announce();
   }
 
-  /** Undoes the last step. Returns its label, or null without one. */
-  undo(): string | null {
+  /**
+   * Undoes the last step. Its label when that is taken; null without a step, or where the server
+   * refuses it. Then the step is the next again, and goes when it is refused once more: those
+   * before it could never be undone.
+   */
+  async undo(): Promise<string | null> {
     const step = this.reachable ? this.done.pop() : undefined;
     if (!step) return null;
+    const [at, { scenes }] = [this.done.length, this];
     this.undone.push(step);
-    step.undo();
+    const answer = step.undo();
     this.announce();
-    return step.label;
+    if (await takes(step, answer)) return step.label;
+    if (scenes !== this.scenes || this.done.includes(step)) return null;
+    this.undone = this.undone.filter((one) => one !== step);
+    if (comesAgain(step)) this.done.splice(at, 0, step);
+    this.announce();
+    return null;
   }
 
-  redo(): string | null {
+  /** The same for the last step that was undone. */
+  async redo(): Promise<string | null> {
     const step = this.undone.pop();
     if (!step) return null;
-    this.done.push({ ...step, at: -Infinity, movement: undefined });
-    step.redo();
+    const { scenes, additions } = this;
+    Object.assign(step, { at: -Infinity, movement: undefined });
+    this.done.push(step);
+    const answer = step.redo();
     this.announce();
-    return step.label;
+    if (await takes(step, answer)) return step.label;
+    if (scenes !== this.scenes || !this.done.includes(step)) return null;
+    this.done = this.done.filter((one) => one !== step);
+    if (comesAgain(step) && additions === this.additions) this.undone.push(step);
+    this.announce();
+    return null;
   }
 
   /** A scene is seen that is being loaded: steps of the one before wait until it stays or goes. */
   enterScene(): void {
     if (this.before) return;
+    this.scenes += 1;
     this.before = { done: this.done.length, undone: this.undone };
     this.undone = [];
     this.announce();
@@ -137,8 +182,9 @@ export class UndoHistory {
       return;
     }
     const { done } = this.before;
+    this.scenes += 1;
     if (!step) this.redoAgain();
-    else this.done.splice(done, 0, { ...step, at: this.clock() });
+    else this.done.splice(done, 0, { ...step, at: this.clock(), refused: false });
     this.before = null;
     if (this.done.length > maxSteps) this.dropOldest();
     this.announce();
@@ -148,6 +194,7 @@ export class UndoHistory {
   leaveScene(): void {
     if (!this.before) return;
     const { done } = this.before;
+    this.scenes += 1;
     this.redoAgain();
     this.done = [...this.done.slice(0, done), ...this.done.slice(done).filter(stays)];
     this.undone = this.undone === this.before.undone ? this.undone : this.undone.filter(stays);
@@ -158,6 +205,7 @@ export class UndoHistory {
   /** Another viewer has loaded another scene: that which was seen, if there was one. */
   dropScene(): void {
     const done = this.before?.done ?? this.done.length;
+    this.scenes += 1;
     if (this.before) this.before.undone = this.before.undone.filter(stays);
     else this.undone = this.undone.filter(stays);
     this.redoAgain();
@@ -167,6 +215,7 @@ export class UndoHistory {
   }
 
   clear(): void {
+    this.scenes += 1;
     this.done = [];
     this.undone = [];
     this.before = null;

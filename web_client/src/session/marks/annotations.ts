@@ -41,8 +41,8 @@ export class Annotations extends MarkStore<Annotation, AnnotationList, Annotatio
       label: "annotation edited",
       key: `annotation ${id} ${text}`,
       ofScene: true,
-      undo: () => void send(before),
-      redo: () => void send(text),
+      undo: () => send(before),
+      redo: () => send(text),
     });
   }
 

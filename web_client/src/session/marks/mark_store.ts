@@ -4,22 +4,15 @@
 import type { AnimationState, SceneInfo } from "heliograph/messages.ts";
 import { RpcError, type RpcPeer } from "heliograph/rpc.ts";
 import { Signal } from "../../common/signal.ts";
+import type { Step } from "../history/undo_history.ts";
 import { followMotion } from "./moving_points.ts";
-
-interface HistoryStep {
-  label: string;
-  key: string;
-  ofScene: boolean;
-  undo(): void;
-  redo(): void;
-}
 
 export interface MarksHost {
   rpc: RpcPeer;
   capabilities: { methods: Signal<ReadonlySet<string>>; has(method: string): boolean };
   scene: Signal<SceneInfo | null>;
   animation: Signal<AnimationState | null>;
-  history: { add(step: HistoryStep): void };
+  history: { add(step: Step): void };
   /** Whether what the page showed is still to be restored in another session. */
   isRestoring(): boolean;
   attempt(action: () => Promise<unknown>): Promise<void>;
@@ -136,18 +129,23 @@ export class MarkStore<
     return done;
   }
 
-  /** Undo leads from `after` to `before`; all keep their ids. */
+  /** Undo leads from `after` to `before`; all keep their ids. It is refused where no mark changes. */
   private record(label: string, before: readonly Item[], after: readonly Item[]): void {
-    const replace = async (gone: readonly Item[], back: readonly Item[]): Promise<void> => {
-      for (const { id } of gone) await this.change(() => this.calls.remove(id));
-      for (const item of back) await this.change(() => this.calls.add(this.calls.requestOf(item)));
+    const replace = async (gone: readonly Item[], back: readonly Item[]): Promise<boolean> => {
+      const calls = [
+        ...gone.map(({ id }) => () => this.calls.remove(id)),
+        ...back.map((item) => () => this.calls.add(this.calls.requestOf(item))),
+      ];
+      let changed = false;
+      for (const call of calls) changed = (await this.change(call)) || changed;
+      return changed;
     };
     this.host.history.add({
       label,
       key: `${label} ${[...before, ...after].map(({ id }) => id).join()}`,
       ofScene: true,
-      undo: () => void replace(after, before),
-      redo: () => void replace(before, after),
+      undo: () => replace(after, before),
+      redo: () => replace(before, after),
     });
   }
 }
