@@ -110,10 +110,8 @@ void write_light_grid(std::span<const shared::Light> lights, const scene::Bounds
   std::memcpy(table + first * light_texel, &header, sizeof header);
   write_entries(tree, header,
                 reinterpret_cast<shared::LightEntry*>(table + header.first_entry * light_texel));
-  std::memcpy(table + header.first_slot * light_texel, tree.slots().data(),
-              tree.slots().size_bytes());
-  std::memcpy(table + header.first_outside * light_texel, outside.data(),
-              outside.size() * light_texel);
+  std::ranges::copy(std::as_bytes(tree.slots()), table + header.first_slot * light_texel);
+  std::ranges::copy(std::as_bytes(std::span(outside)), table + header.first_outside * light_texel);
 }
 
 }  // namespace heliograph::render
