@@ -49,7 +49,15 @@ class FaultyWork:
             again = f"after {what} the same request"
             if failure := await self.attempt(again, action):
                 self.wrong.append(f"{again}: {failure}")
+            self.forget()
             await asyncio.sleep(PAUSE)
+
+    def forget(self):
+        """What the session was sent and nothing waits for: of hours it would fill the memory."""
+        worker = self.stage.worker
+        worker.notifications.clear()
+        while not worker.frames.empty():
+            worker.frames.get_nowait()
 
     async def attempt(self, what, action):
         """Why it was refused, or nothing."""
