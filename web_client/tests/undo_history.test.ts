@@ -294,13 +294,44 @@ test("a step in a scene that is gone does not come back when its undo is refused
   assert.deepEqual(history.next.value, { undo: "sun", redo: null });
 });
 
-test("undo that is redone before its refusal stays done", async () => {
+test("undo waits for the answer to the undo before: a refused step is undone first", async () => {
   const { history, asked } = withAnsweredStep();
-  const refused = history.undo();
-  const redone = history.redo();
+  const presses = [history.undo(), history.undo(), history.redo()];
+  assert.equal(asked.length, 1);
   asked[0]!.answer(false);
+  await presses[0];
+  await Promise.resolve();
+  assert.equal(asked.length, 2, "the same step again");
   asked[1]!.answer(true);
-  assert.equal(await refused, null);
-  assert.equal(await redone, "texture");
+  assert.equal(await presses[1], "texture");
+  await Promise.resolve();
+  asked[2]!.answer(true);
+  assert.deepEqual(await Promise.all(presses), [null, "texture", "texture"]);
   assert.deepEqual(history.next.value, { undo: "texture", redo: null });
+});
+
+test("a refused step that is none of a scene keeps its place beside a scene that is seen", async () => {
+  const { history } = numbers();
+  const asked: ReturnType<typeof pendingChange<boolean>>[] = [];
+  const ask = (): Promise<boolean> => {
+    asked.push(pendingChange<boolean>());
+    return asked.at(-1)!.change;
+  };
+  history.add({ label: "environment", key: "environment", undo: ask, redo: ask });
+  const undone = history.undo();
+  history.enterScene();
+  asked[0]!.answer(false);
+  assert.equal(await undone, null);
+  assert.deepEqual(history.next.value, { undo: null, redo: null });
+  history.leaveScene();
+  assert.deepEqual(history.next.value, { undo: "environment", redo: null });
+  const taken = history.undo();
+  asked[1]!.answer(true);
+  await taken;
+  const redone = history.redo();
+  history.enterScene();
+  asked[2]!.answer(false);
+  assert.equal(await redone, null);
+  history.leaveScene();
+  assert.deepEqual(history.next.value, { undo: null, redo: "environment" });
 });

@@ -59,8 +59,7 @@ export class SceneLoading {
     this.host = host;
   }
 
-  /** Whether the scene is shown. */
-  async load(name: string, part: ScenePart = {}, recorded = true): Promise<boolean> {
+  async load(name: string, part: ScenePart = {}, recorded = true): Promise<void> {
     const { host } = this;
     const before = host.viewState();
     this.start({ kind: "scene", name, stage: "starting", fraction: 0, by: host.viewer() });
@@ -70,14 +69,12 @@ export class SceneLoading {
         label: `scene ${name}`,
         key: `scene ${name} ${JSON.stringify(part)}`,
         undo: () => host.show(before),
-        redo: () => this.load(name, part, false),
+        redo: () => void this.load(name, part, false),
       };
       host.history.keepScene(recorded ? step : null);
       await host.sceneChanged(info);
-      return true;
     } catch (error) {
       this.failed(name, error);
-      return false;
     }
   }
 

@@ -105,14 +105,3 @@ test("steps in a scene that does not arrive are gone", async () => {
   history.undo();
   assert.deepEqual(undone, ["in hall"]);
 });
-
-test("a scene that cannot be loaded again is not told as done again", async () => {
-  const { history, loaded, answer } = entering();
-  answer.resolve?.();
-  await loaded;
-  await history.undo();
-  const redone = history.redo();
-  answer.reject?.(new Error("deleted"));
-  assert.equal(await redone, null);
-  assert.deepEqual(history.next.value, { undo: "in hall", redo: "scene garden" });
-});

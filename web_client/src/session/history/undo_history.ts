@@ -12,7 +12,10 @@ export interface Step {
   movement?: number | undefined;
   /** It concerns the content of a scene and is void when another viewer loads another one. */
   ofScene?: boolean;
-  /** False where the server refuses it, which is told. Without a result it is taken as done. */
+  /**
+   * False where the server does not take it, which is told unless the connection was lost. Without
+   * a result it is done.
+   */
   undo(): void | Promise<boolean>;
   redo(): void | Promise<boolean>;
 }
@@ -24,6 +27,12 @@ interface Entry extends Step {
   refused: boolean;
 }
 
+/** While a scene is seen that may not stay: what was done, a number, and undone before it. */
+interface BeforeScene {
+  done: number;
+  undone: Entry[];
+}
+
 /** The labels of the next steps; null where there is none. */
 interface NextSteps {
   undo: string | null;
@@ -33,13 +42,6 @@ interface NextSteps {
 /** Whether it outlives its scene. */
 function stays({ ofScene }: Step): boolean {
   return !ofScene;
-}
-
-/** Whether the server has taken an undo or redo; waits for its answer. */
-async function takes(step: Entry, answer: void | Promise<boolean>): Promise<boolean> {
-  const taken = (await answer) !== false;
-  if (taken) step.refused = false;
-  return taken;
 }
 
 /** Whether a step that was refused may be tried again. */
@@ -67,11 +69,13 @@ export class UndoHistory {
   readonly next = new Signal<NextSteps>({ undo: null, redo: null });
   private done: Entry[] = [];
   private undone: Entry[] = [];
-  /** While a scene is seen that may not stay: what was done and undone before it. */
-  private before: { done: number; undone: Entry[] } | null = null;
-  /** How often the scene was another one, or the history was cleared. */
+  private before: BeforeScene | null = null;
+  /** How often the history was cleared, and how often the scene was another one. */
+  private clears = 0;
   private scenes = 0;
   private additions = 0;
+  /** Ends with the answer to the undo or redo that waits for one. */
+  private turn: Promise<unknown> | null = null;
   /** Changes that the server has not answered: each may still add a step. */
   private readonly unanswered = new Set<Promise<unknown>>();
   private waiting: Waiting | null = null;
@@ -130,40 +134,32 @@ export class UndoHistory {
   }
 
   /**
-   * Undoes the last step. Its label when that is taken; null without a step, or where the server
-   * refuses it. Then the step is the next again, and goes when it is refused once more: those
-   * before it could never be undone.
+   * Undoes the last step, when the undo or redo before has its answer. Its label when it is taken;
+   * null without a step, or where the server refuses it. Then the step is the next again, and goes
+   * when it is refused once more: those before it could never be undone.
    */
-  async undo(): Promise<string | null> {
+  undo(): Promise<string | null> {
+    if (this.turn) return this.turn.then(() => this.undo());
     const step = this.reachable ? this.done.pop() : undefined;
-    if (!step) return null;
-    const [at, { scenes }] = [this.done.length, this];
+    if (!step) return Promise.resolve(null);
+    const [at, { before }] = [this.done.length, this];
     this.undone.push(step);
     const answer = step.undo();
     this.announce();
-    if (await takes(step, answer)) return step.label;
-    if (scenes !== this.scenes || this.done.includes(step)) return null;
-    this.undone = this.undone.filter((one) => one !== step);
-    if (comesAgain(step)) this.done.splice(at, 0, step);
-    this.announce();
-    return null;
+    return this.whenTaken(step, answer, () => this.keepDone(step, at, before));
   }
 
   /** The same for the last step that was undone. */
-  async redo(): Promise<string | null> {
+  redo(): Promise<string | null> {
+    if (this.turn) return this.turn.then(() => this.redo());
     const step = this.undone.pop();
-    if (!step) return null;
-    const { scenes, additions } = this;
+    if (!step) return Promise.resolve(null);
+    const { additions, before } = this;
     Object.assign(step, { at: -Infinity, movement: undefined });
     this.done.push(step);
     const answer = step.redo();
     this.announce();
-    if (await takes(step, answer)) return step.label;
-    if (scenes !== this.scenes || !this.done.includes(step)) return null;
-    this.done = this.done.filter((one) => one !== step);
-    if (comesAgain(step) && additions === this.additions) this.undone.push(step);
-    this.announce();
-    return null;
+    return this.whenTaken(step, answer, () => this.keepUndone(step, additions, before));
   }
 
   /** A scene is seen that is being loaded: steps of the one before wait until it stays or goes. */
@@ -215,11 +211,55 @@ export class UndoHistory {
   }
 
   clear(): void {
-    this.scenes += 1;
+    this.clears += 1;
     this.done = [];
     this.undone = [];
     this.before = null;
     this.stopWaiting();
+    this.announce();
+  }
+
+  private whenTaken(
+    step: Entry,
+    answer: void | Promise<boolean>,
+    refused: () => void,
+  ): Promise<string | null> {
+    if (!answer) return Promise.resolve(step.label);
+    const { clears, scenes } = this;
+    const told = answer
+      .catch(() => false)
+      .then((taken) => {
+        this.turn = null;
+        if (taken) step.refused = false;
+        // What concerns a scene that is gone does not come back.
+        else if (step.ofScene ? scenes === this.scenes : clears === this.clears) refused();
+        return taken ? step.label : null;
+      });
+    this.turn = told;
+    return told;
+  }
+
+  /** A step that was not undone goes back where it was: below what was changed since. */
+  private keepDone(step: Entry, at: number, before: BeforeScene | null): void {
+    const others = (steps: Entry[]): Entry[] => steps.filter((one) => one !== step);
+    this.undone = others(this.undone);
+    if (this.before) this.before.undone = others(this.before.undone);
+    if (comesAgain(step)) {
+      this.done.splice(at, 0, step);
+      if (this.before !== before && this.before) this.before.done += 1;
+    }
+    this.announce();
+  }
+
+  /** A step that was not done again can be tried again, unless something was changed since. */
+  private keepUndone(step: Entry, additions: number, before: BeforeScene | null): void {
+    const at = this.done.indexOf(step);
+    if (at < 0) return;
+    this.done.splice(at, 1);
+    const entered = this.before !== before ? this.before : null;
+    if (entered) entered.done -= 1;
+    const undone = entered ? entered.undone : this.undone;
+    if (comesAgain(step) && additions === this.additions) undone.push(step);
     this.announce();
   }
 
