@@ -15,18 +15,14 @@ layout(set = 1, binding = 2, std430) readonly buffer Chosen { Hit chosen[]; };  
 layout(set = 1, binding = 3, rgba32f) readonly uniform image2D through;  // a: 0: no ray
 layout(set = 1, binding = 4, rgba32f) uniform image2D radiance;
 
-/// The volume behind a pixel's surface; 0: none.
-uint volume_at(ivec2 pixel) {
-  uint number = layer_number(chosen[uint(pixel.y) * frame.extent.x + uint(pixel.x)]);
-  return layers[number].refraction == 0.0 ? 0u : number;
-}
+Hit chosen_at(ivec2 pixel) { return chosen[uint(pixel.y) * frame.extent.x + uint(pixel.x)]; }
 
 /// 1 for the colour of a band.
 vec3 color_of(uint band) { return vec3(equal(uvec3(1u, 2u, 3u), uvec3(band))); }
 
-/// `light` of one band, that stands for all three, with the others of the same volume around it; as
-/// it is where some are missing.
-vec3 with_other_bands(vec3 light, uint medium, uint own, ivec2 pixel) {
+/// `light` of one band, that stands for all three, with the others of the same instance around it;
+/// as it is where some are missing.
+vec3 with_other_bands(vec3 light, uint medium, uint own, uint instance, ivec2 pixel) {
   vec3 sum = light, count = color_of(own);
   for (int i = 0; i < 9; ++i) {
     ivec2 at = pixel + ivec2(i % 3, i / 3) - 1;
@@ -34,7 +30,7 @@ vec3 with_other_bands(vec3 light, uint medium, uint own, ivec2 pixel) {
     uint band = pixel_band(medium, at);
     if (band == own) continue;
     vec4 near = imageLoad(through, at);
-    if (near.a <= 0.0 || volume_at(at) != medium) continue;
+    if (near.a <= 0.0 || chosen_at(at).instance != instance) continue;
     sum += near.rgb;
     count += color_of(band);
   }
@@ -47,9 +43,10 @@ void main() {
   uint packed = rays[index].pixel;
   ivec2 pixel = ivec2(packed & 0xffffu, packed >> 16u);
   vec3 light = imageLoad(through, pixel).rgb;
-  uint medium = volume_at(pixel);
-  uint band = pixel_band(medium, pixel);
-  if (band != 0u) light = with_other_bands(light, medium, band, pixel);
+  Hit hit = chosen_at(pixel);
+  uint medium = layer_number(hit);
+  uint band = layers[medium].refraction == 0.0 ? 0u : pixel_band(medium, pixel);
+  if (band != 0u) light = with_other_bands(light, medium, band, hit.instance, pixel);
   vec4 sum = imageLoad(radiance, pixel);
   imageStore(radiance, pixel, vec4(sum.rgb + light, sum.a));
 }

@@ -65,7 +65,8 @@ void main() {
     ray.user = bits.r;
     ray.padding0 = bits.g;
     ray.padding1 = bits.b;
-    bool carries = any(greaterThan(weight, vec3(0.0)));
+    // Neighbours are to see that nothing is left of a band.
+    bool carries = pixel_band(medium, pixel) != 0u || any(greaterThan(weight, vec3(0.0)));
     leaves = carries && !stays;
     stays = carries && stays;
   }

@@ -35,7 +35,8 @@ bool bends_light(HitSurface s, Boundary boundary) {
 }
 
 /// The band of wavelengths that a pixel's ray has in a volume that splits light into its colours:
-/// any three pixels in a row or a column have all of them, and so has a pixel in every three frames.
+/// any three pixels in a row or a column have all of them, and so has a pixel in three frames, after
+/// which their order is another.
 uint pixel_band(uint medium, ivec2 pixel) {
   if (!scene_has(scene_disperses) || layers[medium].dispersion <= 0.0) return 0u;
   uint turn = pcg3d(uvec3(frame.sample_index / 3u, band_dimension, frame.seed)).x % 3u;

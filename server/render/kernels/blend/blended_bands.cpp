@@ -20,8 +20,8 @@ class BandSharing {
     const glm::ivec2 pixel = unpacked(job_.rays.rays[ray].pixel);
     const float* const through = texel(job_.through, pixel);
     glm::vec3 light(through[0], through[1], through[2]);
-    const std::uint32_t medium = volume_at(pixel);
-    if (job_.scene.layers[medium].dispersion > 0.0f) light = with_other_bands(light, medium, pixel);
+    const std::uint32_t instance = instance_at(pixel);
+    if (splits_light(instance)) light = with_other_bands(light, instance, pixel);
     float* const sum = job_.radiance.row<float>(static_cast<std::uint32_t>(pixel.y)) + 4 * pixel.x;
     for (int c = 0; c < 3; ++c) sum[c] += light[c];
   }
@@ -31,16 +31,20 @@ class BandSharing {
     return image.row<const float>(static_cast<std::uint32_t>(at.y)) + 4 * at.x;
   }
 
-  /// The volume behind a pixel's surface; 0: none.
-  std::uint32_t volume_at(glm::ivec2 pixel) const {
+  /// Of a pixel's surface.
+  std::uint32_t instance_at(glm::ivec2 pixel) const {
     const glm::uvec2 at(pixel);
-    const shared::Hit& hit = job_.chosen[at.y * job_.frame.extent.x + at.x];
-    const std::uint32_t mesh = job_.scene.instances[hit.instance].mesh;
-    const std::uint32_t number = job_.scene.materials[job_.scene.meshes[mesh].material].layer;
-    return job_.scene.layers[number].refraction == 0.0f ? 0 : number;
+    return job_.chosen[at.y * job_.frame.extent.x + at.x].instance;
   }
 
-  glm::vec3 with_other_bands(glm::vec3 light, std::uint32_t medium, glm::ivec2 pixel) const {
+  bool splits_light(std::uint32_t instance) const {
+    const std::uint32_t mesh = job_.scene.instances[instance].mesh;
+    const std::uint32_t number = job_.scene.materials[job_.scene.meshes[mesh].material].layer;
+    const Layer& layer = job_.scene.layers[number];
+    return layer.refraction != 0.0f && layer.dispersion > 0.0f;
+  }
+
+  glm::vec3 with_other_bands(glm::vec3 light, std::uint32_t instance, glm::ivec2 pixel) const {
     const int own = band_color(pixel.x, pixel.y, turn_);
     glm::vec3 sum = light, count(0.0f);
     count[own] = 1.0f;
@@ -50,7 +54,7 @@ class BandSharing {
       for (int x = first.x; x <= last.x; ++x) {
         const int color = band_color(x, y, turn_);
         const float* const near = texel(job_.through, {x, y});
-        if (color == own || near[3] <= 0.0f || volume_at({x, y}) != medium) continue;
+        if (color == own || near[3] <= 0.0f || instance_at({x, y}) != instance) continue;
         sum[color] += near[color];
         count[color] += 1.0f;
       }

@@ -50,7 +50,7 @@ class BlendedEntry {
     entries_.at(as_unsigned(pixel.x), as_unsigned(pixel.y), u.x, u.y);
     ray.direction = sample_transmitted(m, refraction_index(scene_, boundary.medium, band), u);
     ray.user = throughput * m.transmitted * Float3{share(band, 1), share(band, 2), share(band, 3)};
-    const Mask carries = hn::And(bends, hn::Gt(largest_of(ray.user), zero()));
+    const Mask carries = hn::And(bends, hn::Gt(largest_of(m.transmitted), zero()));
     const Mask enters = hn::And(carries, float_mask(hn::Gt(boundary.medium, integer(0))));
     inside.add(ray, enters);
     refracted.add(ray, hn::AndNot(enters, carries));

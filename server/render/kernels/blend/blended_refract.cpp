@@ -42,7 +42,9 @@ class BoundaryCrossing {
       stays = cross(hit, from_eye, medium, pixel, ray);
     }
     ray.user = ray.user * left;
-    const Mask carries = hn::And(lanes, hn::Gt(largest_of(ray.user), zero()));
+    // Neighbours are to see that nothing is left of a band.
+    const Mask banded = float_mask(hn::Gt(bands_.at(scene_, medium, pixel), integer(0)));
+    const Mask carries = hn::And(lanes, hn::Or(banded, hn::Gt(largest_of(ray.user), zero())));
     inside.add(ray, hn::And(carries, stays));
     refracted.add(ray, hn::AndNot(stays, carries));
   }

@@ -232,14 +232,14 @@ bool MovingScene::write_layers(std::span<const shared::MaterialLayer> layers) {
 
 /// Shaders without layers know none. @return whether the features changed
 bool MovingScene::update_layer_features(const MaterialTables& tables) {
-  constexpr std::uint32_t of_layers =
-      shared::scene_layers | shared::scene_diffuse_transmits | shared::scene_disperses;
+  constexpr std::uint32_t of_layers = shared::scene_layers | shared::scene_diffuse_transmits;
   const std::uint32_t before = features_;
   features_ = (before & ~of_layers) | (resources_->features & of_layers);
   if (std::ranges::any_of(tables.materials, &shared::Material::layer)) {
     features_ |= shared::scene_layers;
   }
   if (scene::scatters_through(tables.layers)) features_ |= shared::scene_diffuse_transmits;
+  // For good: an animation that passes zero shall not begin all histories again.
   if (scene::disperses(tables.layers)) features_ |= shared::scene_disperses;
   return features_ != before;
 }
