@@ -22,15 +22,15 @@ layout(push_constant) uniform Constants {
   uint last_round;
 };
 
-/// What happens to `ray` at the boundary where it meets `s`. `medium`: that it has entered, whose
-/// band it has. `weight`: what its light is multiplied by. @return whether it stays inside
-bool cross_boundary(inout Ray ray, HitSurface s, Boundary boundary, uint medium, ivec2 pixel,
+/// What happens to `ray` at the boundary where it meets `s`. `band`: that it has in the volume that
+/// it has entered. `weight`: what its light is multiplied by. @return whether it stays inside
+bool cross_boundary(inout Ray ray, HitSurface s, Boundary boundary, uint band, ivec2 pixel,
                     inout vec3 weight) {
   SurfaceMaterial m = material_of(s, ray.direction);
   uint dimension = boundary_dimension + 2u * round;
   float pick = random_number(uvec2(pixel), frame.sample_index, dimension, frame.seed);
   vec2 u = random_pair(uvec2(pixel), frame.sample_index, dimension + 1u, frame.seed);
-  float index = refraction_index(boundary.medium, pixel_band(medium, pixel));
+  float index = refraction_index(boundary.medium, band);
   Departure d = sample_departure(s, m, index, pick, u);
   weight *= d.weight;
   // After the last boundary all light goes on as if nothing bent it.
@@ -50,6 +50,7 @@ void main() {
     ivec2 pixel = ivec2(ray.pixel & 0xffffu, ray.pixel >> 16u);
     Hit entered = chosen[uint(pixel.y) * frame.extent.x + uint(pixel.x)];
     uint medium = layer_number(entered);
+    uint band = pixel_band(medium, pixel);
     vec3 weight = uintBitsToFloat(uvec3(ray.user, ray.padding0, ray.padding1));
     if (hit.instance == hit_none) {
       // The mesh is not closed: as if its volume were as thick as the material says.
@@ -59,14 +60,14 @@ void main() {
       float width = cone_width(camera_cone(), entered.t + hit.t);
       HitSurface s = hit_surface(hit, ray.direction, width);
       Boundary boundary = boundary_of(hit, s, ray.direction);
-      if (boundary.leaving) stays = cross_boundary(ray, s, boundary, medium, pixel, weight);
+      if (boundary.leaving) stays = cross_boundary(ray, s, boundary, band, pixel, weight);
     }
     uvec3 bits = floatBitsToUint(weight);
     ray.user = bits.r;
     ray.padding0 = bits.g;
     ray.padding1 = bits.b;
     // Neighbours are to see that nothing is left of a band.
-    bool carries = pixel_band(medium, pixel) != 0u || any(greaterThan(weight, vec3(0.0)));
+    bool carries = band != 0u || any(greaterThan(weight, vec3(0.0)));
     leaves = carries && !stays;
     stays = carries && stays;
   }

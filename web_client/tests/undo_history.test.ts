@@ -206,14 +206,20 @@ test("undo that waits is dropped with the history", async () => {
   assert.equal(values.exposure, 1);
 });
 
-/** A history with the step "sun" and, on it, "texture", whose undo and redo the server answers. */
-function withAnsweredStep() {
-  const { history, change, values } = numbers();
+/** An undo or redo that the server answers, and what was asked of it. */
+function answered() {
   const asked: ReturnType<typeof pendingChange<boolean>>[] = [];
   const ask = (): Promise<boolean> => {
     asked.push(pendingChange<boolean>());
     return asked.at(-1)!.change;
   };
+  return { asked, ask };
+}
+
+/** A history with the step "sun" and, on it, "texture", whose undo and redo the server answers. */
+function withAnsweredStep() {
+  const { history, change, values } = numbers();
+  const { asked, ask } = answered();
   change("sun", 5);
   history.add({ label: "texture", key: "texture", ofScene: true, undo: ask, redo: ask });
   return { history, change, values, asked };
@@ -312,11 +318,7 @@ test("undo waits for the answer to the undo before: a refused step is undone fir
 
 test("a refused step that is none of a scene keeps its place beside a scene that is seen", async () => {
   const { history } = numbers();
-  const asked: ReturnType<typeof pendingChange<boolean>>[] = [];
-  const ask = (): Promise<boolean> => {
-    asked.push(pendingChange<boolean>());
-    return asked.at(-1)!.change;
-  };
+  const { asked, ask } = answered();
   history.add({ label: "environment", key: "environment", undo: ask, redo: ask });
   const undone = history.undo();
   history.enterScene();

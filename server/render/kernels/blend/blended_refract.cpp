@@ -35,15 +35,16 @@ class BoundaryCrossing {
     const Integer medium = layer_number(scene_, instance);
     // The mesh is not closed: as if its volume were as thick as the material says.
     Float3 left = left_by_thickness(scene_, instance, medium);
+    const Integer band = bands_.at(scene_, medium, pixel);
     Mask stays = hn::FirstN(tag, 0);
     if (!none(hit.met)) {
       left = select(hit.met, left_by_volume(scene_, medium, hit.t), left);
       const Float from_eye = entered.real(HELIOGRAPH_WORD(shared::Hit, t)) + hit.t;
-      stays = cross(hit, from_eye, medium, pixel, ray);
+      stays = cross(hit, from_eye, band, pixel, ray);
     }
     ray.user = ray.user * left;
     // Neighbours are to see that nothing is left of a band.
-    const Mask banded = float_mask(hn::Gt(bands_.at(scene_, medium, pixel), integer(0)));
+    const Mask banded = float_mask(hn::Gt(band, integer(0)));
     const Mask carries = hn::And(lanes, hn::Or(banded, hn::Gt(largest_of(ray.user), zero())));
     inside.add(ray, hn::And(carries, stays));
     refracted.add(ray, hn::AndNot(stays, carries));
@@ -54,9 +55,9 @@ class BoundaryCrossing {
     return shared::boundary_dimension + 2 * job.constants.round;
   }
 
-  /// `medium`: that rays have entered, whose bands they have. @return which stay inside
-  HWY_INLINE Mask cross(const HitLanes& hit, Float from_eye, Integer medium,
-                        const PixelLanes& pixel, RayLanes& ray) const {
+  /// `band`: that rays have in the volumes that they have entered. @return which stay inside
+  HWY_INLINE Mask cross(const HitLanes& hit, Float from_eye, Integer band, const PixelLanes& pixel,
+                        RayLanes& ray) const {
     const Mask nowhere = hn::FirstN(tag, 0);
     const Float width = hn::MulAdd(from_eye, number(cone_.y), number(cone_.x));
     const auto s = hit_surface<LayeredSurfaceLanes, false>(scene_, hit, ray.direction, width);
@@ -67,7 +68,7 @@ class BoundaryCrossing {
     const Unsigned x = as_unsigned(pixel.x), y = as_unsigned(pixel.y);
     Float2 u;
     directions_.at(x, y, u.x, u.y);
-    const Float index = refraction_index(scene_, boundary.medium, bands_.at(scene_, medium, pixel));
+    const Float index = refraction_index(scene_, boundary.medium, band);
     const DepartureLanes d = sample_departure(s, m, index, picks_.at(x, y), u);
     ray.user = select(leaving, ray.user * d.weight, ray.user);
     // After the last boundary all light goes on as if nothing bent it.
