@@ -25,18 +25,6 @@ std::string refusal(const std::vector<DeviceReport>& reports) {
   return text;
 }
 
-std::uint32_t find_queue_family(VkPhysicalDevice device) {
-  std::uint32_t count = 0;
-  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-  constexpr VkQueueFlags needed = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    if ((families[i].queueFlags & needed) == needed && families[i].timestampValidBits > 0) return i;
-  }
-  throw GpuError("the device has no graphics and compute queue");
-}
-
 /// Hexadecimal name of the pipeline cache this exact driver can read.
 std::string cache_name(VkPhysicalDevice device) {
   VkPhysicalDeviceProperties properties;
@@ -59,10 +47,9 @@ bool fills_and_filters(VkPhysicalDevice device, VkFormat format) {
   return (properties.optimalTilingFeatures & needed) == needed;
 }
 
-void destroy(VkDevice device, VkSemaphore timeline, VkPipelineCache cache) {
+void destroy(VkDevice device, VkPipelineCache cache) {
   if (!device) return;
   vkDestroyPipelineCache(device, cache, nullptr);
-  vkDestroySemaphore(device, timeline, nullptr);
   vkDestroyDevice(device, nullptr);
 }
 
@@ -85,7 +72,8 @@ Device::Device(const Instance& instance, const DeviceOptions& options) {
     create(instance);
     load_pipeline_cache(options.cache_folder);
   } catch (...) {
-    destroy(handle_, timeline_, pipeline_cache_);  // what was made before the step that failed
+    queues_.reset();  // what was made before the step that failed
+    destroy(handle_, pipeline_cache_);
     throw;
   }
 }
@@ -97,7 +85,8 @@ Device::~Device() {
   } catch (const std::exception&) {
     // There is no memory for it: the next start compiles the pipelines again.
   }
-  destroy(handle_, timeline_, pipeline_cache_);
+  queues_.reset();
+  destroy(handle_, pipeline_cache_);
 }
 
 void Device::create(const Instance& instance) {
@@ -105,14 +94,8 @@ void Device::create(const Instance& instance) {
   vkGetPhysicalDeviceProperties(report_.handle, &properties);
   limits_ = properties.limits;
   vkGetPhysicalDeviceMemoryProperties(report_.handle, &memory_);
-  queue_family_ = find_queue_family(report_.handle);
+  queues_.emplace(report_.handle, is_cpu());
   labels_ = instance.labels();
-
-  const float priority = 1.0f;
-  VkDeviceQueueCreateInfo queue{VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO};
-  queue.queueFamilyIndex = queue_family_;
-  queue.queueCount = 1;
-  queue.pQueuePriorities = &priority;
 
   const RayFeatures rays(report_.rays);
   VkPhysicalDeviceVulkan13Features v13{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES,
@@ -138,17 +121,13 @@ void Device::create(const Instance& instance) {
   features.features.robustBufferAccess = instance.validation() ? supported.robustBufferAccess : 0;
 
   VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features};
-  info.queueCreateInfoCount = 1;
-  info.pQueueCreateInfos = &queue;
+  info.queueCreateInfoCount = static_cast<std::uint32_t>(queues_->create_infos().size());
+  info.pQueueCreateInfos = queues_->create_infos().data();
   info.enabledExtensionCount = static_cast<std::uint32_t>(rays.extensions().size());
   info.ppEnabledExtensionNames = rays.extensions().data();
   check(vkCreateDevice(report_.handle, &info, nullptr, &handle_), "create the Vulkan device");
   if (!dispatches_by_handle()) volkLoadDevice(handle_);
-  vkGetDeviceQueue(handle_, queue_family_, 0, &queue_);
-  VkSemaphoreTypeCreateInfo type{VK_STRUCTURE_TYPE_SEMAPHORE_TYPE_CREATE_INFO};
-  type.semaphoreType = VK_SEMAPHORE_TYPE_TIMELINE;
-  const VkSemaphoreCreateInfo timeline{VK_STRUCTURE_TYPE_SEMAPHORE_CREATE_INFO, &type};
-  check(vkCreateSemaphore(handle_, &timeline, nullptr, &timeline_), "create a semaphore");
+  queues_->open(handle_);
 }
 
 void Device::load_pipeline_cache(const std::filesystem::path& folder) {
@@ -219,43 +198,18 @@ void Device::check_presence() const {
   check(loss_is_wanted() ? VK_ERROR_DEVICE_LOST : VK_SUCCESS, "reach the device");
 }
 
-std::uint64_t Device::submit(VkCommandBuffer commands) const {
-  VkCommandBufferSubmitInfo buffer{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
-  buffer.commandBuffer = commands;
-  VkSemaphoreSubmitInfo done{VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO};
-  done.semaphore = timeline_;
-  done.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
-  VkSubmitInfo2 info{VK_STRUCTURE_TYPE_SUBMIT_INFO_2};
-  info.commandBufferInfoCount = 1;
-  info.pCommandBufferInfos = &buffer;
-  info.signalSemaphoreInfoCount = 1;
-  info.pSignalSemaphoreInfos = &done;
-  const std::lock_guard lock(queue_mutex_);
-  done.value = submitted_ + 1;
-  check(loss_is_wanted() ? VK_ERROR_DEVICE_LOST : vkQueueSubmit2(queue_, 1, &info, VK_NULL_HANDLE),
-        "give commands to the device");
-  return ++submitted_;
+Submission Device::submit(VkCommandBuffer commands, std::uint32_t queue) const {
+  check_presence();
+  return queues_->submit(commands, queue);
 }
 
-void Device::wait(std::uint64_t submitted) const {
-  while (!wait_for(submitted, std::chrono::hours(1))) continue;
-}
-
-bool Device::wait_for(std::uint64_t submitted, std::chrono::nanoseconds time) const {
-  VkSemaphoreWaitInfo info{VK_STRUCTURE_TYPE_SEMAPHORE_WAIT_INFO};
-  info.semaphoreCount = 1;
-  info.pSemaphores = &timeline_;
-  info.pValues = &submitted;
-  const auto most = static_cast<std::uint64_t>(std::max<std::int64_t>(time.count(), 0));
-  const VkResult result = vkWaitSemaphores(handle_, &info, most);
-  if (result == VK_TIMEOUT) return false;
-  check(result, "run commands on the device");
-  return true;
+void Device::wait(const Submission& submission) const {
+  while (!queues_->wait_for(submission, std::chrono::hours(1))) continue;
 }
 
 void Device::submit_once(const std::function<void(VkCommandBuffer)>& record) const {
   VkCommandPoolCreateInfo pool_info{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
-  pool_info.queueFamilyIndex = queue_family_;
+  pool_info.queueFamilyIndex = queues_->family(Queues::general);
   pool_info.flags = VK_COMMAND_POOL_CREATE_TRANSIENT_BIT;
   VkCommandPool pool = VK_NULL_HANDLE;
   check(vkCreateCommandPool(handle_, &pool_info, nullptr, &pool), "create a command pool");

@@ -1,15 +1,15 @@
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <mutex>
+#include <optional>
 #include <string>
 
 #include "gpu/device/device_choice.hpp"
 #include "gpu/device/instance.hpp"
+#include "gpu/device/queues.hpp"
 #include "gpu/pipelines/program_registry.hpp"
 
 namespace heliograph::gpu {
@@ -20,7 +20,7 @@ struct DeviceOptions {
   bool as_gpu = false;                 // a processor too has memory of its own: tests that path
 };
 
-/// A logical device with one queue that does everything, and its pipeline cache.
+/// A logical device with its queues and its pipeline cache.
 class Device {
  public:
   /// @throws GpuError listing every device and why it was not chosen
@@ -33,7 +33,7 @@ class Device {
   VkPhysicalDevice physical() const { return report_.handle; }
   const DeviceReport& report() const { return report_; }
   const VkPhysicalDeviceLimits& limits() const { return limits_; }
-  std::uint32_t queue_family() const { return queue_family_; }
+  const Queues& queues() const { return *queues_; }
   VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
   bool labels() const { return labels_; }
   ProgramRegistry& programs() const { return programs_; }
@@ -55,14 +55,9 @@ class Device {
   /// @throws DeviceLost
   void check_presence() const;
   /// Submits and returns at once. Thread safe. @returns what wait() waits for
-  std::uint64_t submit(VkCommandBuffer commands) const;
-  /// Until the device is done with what submit() returned this for, and with all before it. Thread
-  /// safe.
-  void wait(std::uint64_t submitted) const;
-  /// Likewise, but no longer than that. @returns whether it is done
-  bool wait_for(std::uint64_t submitted, std::chrono::nanoseconds time) const;
-  /// How often commands were submitted since it was made. Thread safe.
-  std::uint64_t submissions() const { return submitted_; }
+  Submission submit(VkCommandBuffer commands, std::uint32_t queue = Queues::general) const;
+  /// Until it is done. Thread safe.
+  void wait(const Submission& submission) const;
   /// Records into a fresh command buffer, submits it and waits: for set-up work. Thread safe.
   void submit_once(const std::function<void(VkCommandBuffer)>& record) const;
 
@@ -81,17 +76,23 @@ class Device {
   VkPhysicalDeviceLimits limits_{};
   VkPhysicalDeviceMemoryProperties memory_{};
   VkDevice handle_ = VK_NULL_HANDLE;
-  VkQueue queue_ = VK_NULL_HANDLE;
-  std::uint32_t queue_family_ = 0;
+  std::optional<Queues> queues_;
   VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
   std::filesystem::path cache_file_;
   bool labels_ = false;
   bool samples_bc7_ = false;
-  mutable std::mutex queue_mutex_;
-  VkSemaphore timeline_ = VK_NULL_HANDLE;             // counts what the device has done
-  mutable std::atomic<std::uint64_t> submitted_ = 0;  // written under queue_mutex_
   mutable ProgramRegistry programs_;
 };
+
+/// Lets all queues of the device use what is made of `info`, that of a buffer or an image.
+template <typename CreateInfo>
+void share_between_queues(const Device& device, CreateInfo& info) {
+  const std::span<const std::uint32_t> families = device.queues().families();
+  if (families.size() < 2) return;
+  info.sharingMode = VK_SHARING_MODE_CONCURRENT;
+  info.queueFamilyIndexCount = static_cast<std::uint32_t>(families.size());
+  info.pQueueFamilyIndices = families.data();
+}
 
 /// A full memory barrier between everything before and everything after.
 void full_barrier(VkCommandBuffer commands);

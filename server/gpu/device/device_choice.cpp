@@ -27,17 +27,6 @@ std::string version_text(std::uint32_t version) {
          std::to_string(VK_API_VERSION_PATCH(version));
 }
 
-bool has_render_queue(VkPhysicalDevice device) {
-  std::uint32_t count = 0;
-  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
-  std::vector<VkQueueFamilyProperties> families(count);
-  vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-  return std::any_of(families.begin(), families.end(), [](const auto& family) {
-    constexpr VkQueueFlags needed = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-    return (family.queueFlags & needed) == needed && family.timestampValidBits > 0;
-  });
-}
-
 std::vector<std::string> missing_parts(VkPhysicalDevice device, std::uint32_t version) {
   std::vector<std::string> missing;
   if (version < VK_API_VERSION_1_3) {
@@ -59,7 +48,7 @@ std::vector<std::string> missing_parts(VkPhysicalDevice device, std::uint32_t ve
   need(features.features.independentBlend, "independentBlend");
   need(features.features.imageCubeArray, "imageCubeArray");
   need(features.features.shaderStorageImageExtendedFormats, "shaderStorageImageExtendedFormats");
-  need(has_render_queue(device), "a graphics and compute queue with timestamps");
+  need(has_general_queue(device), "a graphics and compute queue with timestamps");
   return missing;
 }
 

@@ -21,13 +21,7 @@ FramePlan::FramePlan(const Device& device, VkExtent2D extent)
     : device_(device),
       extent_(extent),
       drawn_(extent),
-      default_sampler_(make_default_sampler(device)) {
-  VkCommandPoolCreateInfo info{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
-  info.queueFamilyIndex = device.queue_family();
-  info.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
-  check(vkCreateCommandPool(device.handle(), &info, nullptr, &command_pool_),
-        "create a command pool");
-}
+      default_sampler_(make_default_sampler(device)) {}
 
 FramePlan::~FramePlan() {
   try {
@@ -226,6 +220,26 @@ void FramePlan::compile() {
   order_passes();
   list_views();
   make_descriptor_sets();
+  make_command_buffers();
+  VkQueryPoolCreateInfo queries{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
+  queries.queryType = VK_QUERY_TYPE_TIMESTAMP;
+  queries.queryCount = static_cast<std::uint32_t>(passes_.size() * 2 + 1);
+  check(vkCreateQueryPool(device_.handle(), &queries, nullptr, &queries_), "create the timers");
+  for (const Pass& pass : passes_) timings_.push_back({pass.name, pass.is_host_only(), 0.0f});
+  measured_.assign(passes_.size(), -1.0f);
+  if (read_back_.index != ImageRef().index) {
+    for (Readback& readback : readbacks_) readback = Readback(device_, latest(read_back_));
+  }
+  compiled_ = true;
+}
+
+void FramePlan::make_command_buffers() {
+  draws_ = std::ranges::any_of(passes_, &Pass::is_raster);
+  VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
+  pool.queueFamilyIndex = device_.queues().family(choose_queue());
+  pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
+  check(vkCreateCommandPool(device_.handle(), &pool, nullptr, &command_pool_),
+        "create a command pool");
   std::uint32_t submits = 2;
   for (const Pass& pass : passes_) {
     submits += timed_by_clock() || pass.is_host_only() ? 1 : 0;
@@ -237,16 +251,6 @@ void FramePlan::compile() {
   info.commandBufferCount = 2 * submits;
   check(vkAllocateCommandBuffers(device_.handle(), &info, commands_.data()),
         "allocate the frame's command buffers");
-  VkQueryPoolCreateInfo queries{VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO};
-  queries.queryType = VK_QUERY_TYPE_TIMESTAMP;
-  queries.queryCount = static_cast<std::uint32_t>(passes_.size() * 2 + 1);
-  check(vkCreateQueryPool(device_.handle(), &queries, nullptr, &queries_), "create the timers");
-  for (const Pass& pass : passes_) timings_.push_back({pass.name, pass.is_host_only(), 0.0f});
-  measured_.assign(passes_.size(), -1.0f);
-  if (read_back_.index != ImageRef().index) {
-    for (Readback& readback : readbacks_) readback = Readback(device_, latest(read_back_));
-  }
-  compiled_ = true;
 }
 
 void FramePlan::make_descriptor_sets() {

@@ -362,6 +362,9 @@ class FramePlan {
   void check_pass(const Pass& pass) const;
   void order_passes();
   void make_descriptor_sets();
+  void make_command_buffers();
+  /// For a frame when none is in flight: always of one family.
+  std::uint32_t choose_queue() const;
   void list_views();
   void record(const Pass& pass, VkCommandBuffer commands, std::uint32_t query);
   void record_raster(const Pass& pass, VkCommandBuffer commands);
@@ -402,17 +405,19 @@ class FramePlan {
   std::unique_ptr<DescriptorPool> descriptor_pool_;
   Sampler default_sampler_;
   ImageRef read_back_;
-  std::function<bool()> read_back_when_;  // empty: in every frame
-  std::array<Readback, 2> readbacks_;     // by slot()
-  bool came_back_ = false;                // with the frame that was finished last
+  std::function<bool()> read_back_when_;   // empty: in every frame
+  std::array<Readback, 2> readbacks_;      // by slot()
+  bool came_back_ = false;                 // with the frame that was finished last
+  bool draws_ = false;                     // triangles, which queues for compute alone cannot
+  std::uint32_t queue_ = Queues::general;  // of the frames that have begun
   VkCommandPool command_pool_ = VK_NULL_HANDLE;
-  std::vector<VkCommandBuffer> commands_;   // one for each submit of a frame, slot by slot
-  std::size_t submits_ = 0;                 // of this frame so far
-  bool recording_ = false;                  // into the next
-  std::optional<std::uint64_t> submitted_;  // what was last submitted and not waited for
+  std::vector<VkCommandBuffer> commands_;  // one for each submit of a frame, slot by slot
+  std::size_t submits_ = 0;                // of this frame so far
+  bool recording_ = false;                 // into the next
+  std::optional<Submission> submitted_;    // what was last submitted and not waited for
   /// A frame that has begun.
   struct Begun {
-    std::optional<std::uint64_t> submitted;  // its last work for the device
+    std::optional<Submission> submitted;  // its last work for the device
     std::uint32_t slot = 0;
     bool came_back = false;
     bool timed = false;

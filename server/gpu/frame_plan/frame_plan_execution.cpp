@@ -48,8 +48,7 @@ bool FramePlan::begin(const std::function<bool()>& canceled) {
   canceled_ = false;
   // Where passes are timed by the clock, nothing is recorded that was not submitted.
   asks_canceled_ = canceled && timed_by_clock() ? &canceled : nullptr;
-  // The frame before may still write what this one reads.
-  if (!begun_.empty()) full_barrier(recorder());
+  if (begun_.empty()) queue_ = choose_queue();  // two frames run one after the other on one queue
   const bool finished = run_passes();
   asks_canceled_ = nullptr;
   if (!finished) return false;
@@ -63,6 +62,10 @@ bool FramePlan::begin(const std::function<bool()>& canceled) {
                     .timed = times_passes_});
   parity_ ^= 1;
   return true;
+}
+
+std::uint32_t FramePlan::choose_queue() const {
+  return draws_ ? Queues::general : device_.queues().idlest_compute();
 }
 
 bool FramePlan::can_begin_another() const {
@@ -80,7 +83,7 @@ void FramePlan::finish() {
 }
 
 bool FramePlan::wait_for(std::chrono::nanoseconds time) const {
-  return !in_flight() || device_.wait_for(*begun_.front().submitted, time);
+  return !in_flight() || device_.queues().wait_for(*begun_.front().submitted, time);
 }
 
 /// Or a pass runs that was never timed.
@@ -113,7 +116,9 @@ bool FramePlan::is_canceled() const {
 
 /// Whether none of them was canceled.
 bool FramePlan::run_passes() {
-  bool barrier = false;  // of passes left out: those behind them rely on it
+  // The frame before, or work of another queue, may have written what this one reads. Later: of
+  // passes left out, since those behind them rely on it.
+  bool barrier = !begun_.empty() || queue_ != Queues::general;
   std::size_t recorded = 0;
   for (const std::uint32_t i : order_.passes) {
     const Pass& pass = passes_[i];
@@ -203,7 +208,7 @@ void FramePlan::submit() {
   dependency.pMemoryBarriers = &barrier;
   vkCmdPipelineBarrier2(commands, &dependency);
   check(vkEndCommandBuffer(commands), "end the frame's commands");
-  submitted_ = device_.submit(commands);
+  submitted_ = device_.submit(commands, queue_);
 }
 
 void FramePlan::record(const Pass& pass, VkCommandBuffer commands, std::uint32_t query) {

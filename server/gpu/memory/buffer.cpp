@@ -7,11 +7,12 @@
 namespace heliograph::gpu {
 namespace {
 
-VkBufferCreateInfo buffer_info(VkDeviceSize size, VkBufferUsageFlags usage) {
+VkBufferCreateInfo buffer_info(const Device& device, VkDeviceSize size, VkBufferUsageFlags usage) {
   VkBufferCreateInfo info{VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO};
   // Whole texels of any format, so that a view covers the last bytes too.
   info.size = std::max<VkDeviceSize>((size + 15) / 16 * 16, 16);
   info.usage = usage | VK_BUFFER_USAGE_TRANSFER_SRC_BIT | VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+  share_between_queues(device, info);
   return info;
 }
 
@@ -19,7 +20,7 @@ VkBufferCreateInfo buffer_info(VkDeviceSize size, VkBufferUsageFlags usage) {
 
 VkMemoryRequirements Buffer::requirements(const Device& device, VkDeviceSize size,
                                           VkBufferUsageFlags usage) {
-  const VkBufferCreateInfo made = buffer_info(size, usage);
+  const VkBufferCreateInfo made = buffer_info(device, size, usage);
   VkDeviceBufferMemoryRequirements info{VK_STRUCTURE_TYPE_DEVICE_BUFFER_MEMORY_REQUIREMENTS};
   info.pCreateInfo = &made;
   VkMemoryRequirements2 found{VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2};
@@ -32,7 +33,7 @@ Buffer::Buffer(const Device& device, std::string name, VkDeviceSize size, VkBuff
     : Buffer() {  // what is made is the destructor's when a step fails
   device_ = &device;
   name_ = std::move(name);
-  const VkBufferCreateInfo info = buffer_info(size, usage);
+  const VkBufferCreateInfo info = buffer_info(device, size, usage);
   size_ = info.size;
   check(vkCreateBuffer(device.handle(), &info, nullptr, &handle_), "create a buffer");
   device.name(VK_OBJECT_TYPE_BUFFER, handle_, name_);

@@ -17,7 +17,7 @@ VkImageAspectFlags aspect_of(VkFormat format) {
   return is_depth(format) ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
 }
 
-VkImageCreateInfo image_info(const ImageDesc& desc) {
+VkImageCreateInfo image_info(const Device& device, const ImageDesc& desc) {
   VkImageCreateInfo info{VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO};
   info.flags = desc.cube ? VK_IMAGE_CREATE_CUBE_COMPATIBLE_BIT : 0;
   info.imageType = VK_IMAGE_TYPE_2D;
@@ -28,6 +28,7 @@ VkImageCreateInfo image_info(const ImageDesc& desc) {
   info.samples = VK_SAMPLE_COUNT_1_BIT;
   info.tiling = desc.mapped ? VK_IMAGE_TILING_LINEAR : VK_IMAGE_TILING_OPTIMAL;
   info.usage = desc.usage | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  share_between_queues(device, info);
   return info;
 }
 
@@ -112,7 +113,7 @@ const char* format_name(VkFormat format) {
 }
 
 VkMemoryRequirements Image::requirements(const Device& device, const ImageDesc& desc) {
-  const VkImageCreateInfo made = image_info(desc);
+  const VkImageCreateInfo made = image_info(device, desc);
   VkDeviceImageMemoryRequirements info{VK_STRUCTURE_TYPE_DEVICE_IMAGE_MEMORY_REQUIREMENTS};
   info.pCreateInfo = &made;
   VkMemoryRequirements2 found{VK_STRUCTURE_TYPE_MEMORY_REQUIREMENTS_2};
@@ -125,7 +126,7 @@ Image::Image(const Device& device, ImageDesc desc, MemoryPlace place, VkCommandB
     : Image() {
   device_ = &device;
   desc_ = std::move(desc);
-  const VkImageCreateInfo info = image_info(desc_);
+  const VkImageCreateInfo info = image_info(device, desc_);
   check(vkCreateImage(device.handle(), &info, nullptr, &handle_), "create an image");
   bind_memory(std::move(place));
   device.name(VK_OBJECT_TYPE_IMAGE, handle_, desc_.name);

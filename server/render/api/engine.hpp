@@ -81,6 +81,8 @@ class Engine {
   bool encodes_jpeg() const;
   std::uint32_t max_image_size() const;  // pixels, either side
   std::uint64_t validation_messages() const;
+  /// So many frames of different renderers the device draws at the same time: 1 on processors.
+  std::size_t frames_at_once() const;
   /// How often commands were given to the device since the start, to lost ones before it too.
   std::uint64_t submissions() const;
   /// Called on a thread of its own whenever files of the shader folder have changed, and at once

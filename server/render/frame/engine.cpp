@@ -118,7 +118,7 @@ void Engine::recreate() {
   auto made = std::make_shared<Parts>(options_);
   const std::lock_guard lock(mutex_);
   if (made->shader_reload) made->shader_reload->listen(shader_listener_);
-  submissions_before_ += parts_->device.submissions();
+  submissions_before_ += parts_->device.queues().submissions();
   parts_.swap(made);
 }
 
@@ -151,9 +151,13 @@ std::uint64_t Engine::validation_messages() const {
   return current()->instance.validation_messages();
 }
 
+std::size_t Engine::frames_at_once() const {
+  return current()->device.queues().compute_count();
+}
+
 std::uint64_t Engine::submissions() const {
   const std::lock_guard lock(mutex_);
-  return submissions_before_ + parts_->device.submissions();
+  return submissions_before_ + parts_->device.queues().submissions();
 }
 
 std::shared_ptr<const SceneResources> Engine::upload(std::shared_ptr<const scene::Scene> scene,

@@ -159,7 +159,7 @@ void RenderLoop::advance_or_wait() {
   if (loss_reported_.exchange(false) && device_ready_) on_device_lost("outside of rendering");
   const Views views = open_views();
   if (!device_ready_ && !recover_device(views)) return;
-  if (advance_next(views) || finish_frame(true) || !device_ready_) return;
+  if (advance_next(views) || finish_oldest_frame(true) || !device_ready_) return;
   auto due = next_due(views);
   if (held_back_until_) due = due ? std::min(*due, *held_back_until_) : *held_back_until_;
   occupied_ = std::ranges::any_of(views, [](const auto& view) { return view->plays(); });
@@ -179,7 +179,7 @@ void RenderLoop::remove_closed() {
     closed.swap(closed_);
   }
   for (const auto& view : closed) {
-    if (in_flight_ && in_flight_->view == view) in_flight_.reset();
+    std::erase_if(in_flight_, [&](const InFlight& frame) { return frame.view == view; });
     view->refuse_captures();
     turns_.remove(view.get());
   }
@@ -231,20 +231,22 @@ bool RenderLoop::draw_in_turn(const std::shared_ptr<SessionView>& view) {
   if (view->next_frame_moves()) moved_at_ = start;
   const SessionView::Work work = advance(*view, true);
   // The device goes on with this frame while that of another view is shown.
-  finish_frame(false);
+  while (in_flight_.size() >= engine_.frames_at_once()) finish_oldest_frame(false);
   if (view->in_flight() && device_ready_) {
-    in_flight_ = {view, start, contender.refines};
+    in_flight_.push_back({view, start, contender.refines});
   } else if (work == SessionView::Work::drawing) {
     frame_finished(*view, start, contender.refines);
   }
   return work != SessionView::Work::none;
 }
 
-/// Of the view that has one in flight; false: none has. `alone`: no other view has a frame to draw.
-bool RenderLoop::finish_frame(bool alone) {
-  const auto finished = std::exchange(in_flight_, std::nullopt);
-  if (!finished) return false;
-  SessionView& view = *finished->view;
+/// False: no view has one in flight. `alone`: no other view has a frame to draw.
+bool RenderLoop::finish_oldest_frame(bool alone) {
+  if (in_flight_.empty()) return false;
+  const InFlight finished = std::move(in_flight_.front());
+  in_flight_.pop_front();
+  alone = alone && in_flight_.empty();
+  SessionView& view = *finished.view;
   Clock::time_point followed{};
   const auto finish = [&] {
     if (alone && !others_wait_ && view.can_begin_following())
@@ -253,8 +255,8 @@ bool RenderLoop::finish_frame(bool alone) {
     view.finish_frame(device_free_);
   };
   if (attempt(view, finish)) {
-    frame_finished(view, std::max(finished->begun, device_free_), finished->refines);
-    if (view.in_flight()) in_flight_ = {finished->view, followed, false};
+    frame_finished(view, std::max(finished.begun, device_free_), finished.refines);
+    if (view.in_flight()) in_flight_.push_back({finished.view, followed, false});
   }
   return true;
 }
@@ -307,7 +309,7 @@ void RenderLoop::on_new_device(std::function<void()> callback) {
 
 void RenderLoop::on_device_lost(const std::string& why) {
   device_ready_ = false;
-  in_flight_.reset();
+  in_flight_.clear();
   ++device_losses_;
   const Clock::duration pause = retry_backoff_.after_loss(Clock::now());
   retry_at_ = Clock::now() + pause;

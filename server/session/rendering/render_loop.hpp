@@ -83,7 +83,7 @@ class RenderLoop {
   bool advance_next(const Views& views);
   bool draw_in_turn(const std::shared_ptr<SessionView>& view);
   SessionView::Work advance(SessionView& view, bool may_draw);
-  bool finish_frame(bool alone);
+  bool finish_oldest_frame(bool alone);
   void frame_finished(SessionView& view, Clock::time_point begun, bool refines);
   /// Runs `work` of a view, whose failure is not that of others. @returns whether it succeeded
   bool attempt(SessionView& view, const std::function<void()>& work);
@@ -119,14 +119,14 @@ class RenderLoop {
   Clock::time_point retry_at_;
   std::optional<Clock::time_point> held_back_until_;
   bool others_wait_ = false;  // a view has a frame to draw, but not yet the turn
-  /// The view whose frame the device works on: that of another one may begin meanwhile.
+  /// A view whose frame the device works on: those of others may begin meanwhile.
   struct InFlight {
     std::shared_ptr<SessionView> view;
     Clock::time_point begun;
     bool refines = false;
   };
-  std::optional<InFlight> in_flight_;
-  Clock::time_point device_free_;  // when the device was done with the last frame
+  std::deque<InFlight> in_flight_;  // in the order in which they have begun
+  Clock::time_point device_free_;   // when the device was done with the last frame
   std::atomic<bool> stopping_ = false;
   stream::JpegEncoder jpeg_;
   Worker encoder_;

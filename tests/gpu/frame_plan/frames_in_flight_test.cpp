@@ -1,5 +1,7 @@
 // Frames that are canceled, and those that begin while the device works on others.
 #include <cstring>
+#include <memory>
+#include <vector>
 
 #include "tests/gpu/frame_plan/frame_plan_fixture.hpp"
 
@@ -69,6 +71,36 @@ TEST_F(FramePlanTest, OneFrameBeginsWhileTheDeviceWorksOnAnother) {
     EXPECT_EQ(value(b), 2.0f);
     const auto bytes = other.latest(count.current).download();
     EXPECT_EQ(*reinterpret_cast<const float*>(bytes.data()), float(frame));
+  }
+}
+
+// More than a device has queues.
+TEST_F(FramePlanTest, ManyPlansHaveFramesInFlight) {
+  struct Counter {
+    Counter(const Device& device, const ComputeProgram& program, float step)
+        : plan(device, {64, 64}), count(plan.history("count", format)) {
+      plan.pass("count", program)
+          .read(count.previous)
+          .write(count.current)
+          .constants(step)
+          .dispatch(plan.extent());
+      plan.compile();
+    }
+    FramePlan plan;
+    History count;
+  };
+  std::vector<std::unique_ptr<Counter>> counters;
+  for (int i = 1; i <= 9; ++i) {
+    counters.push_back(std::make_unique<Counter>(device_, program_, static_cast<float>(i)));
+  }
+  constexpr int frames = 20;
+  for (int frame = 0; frame < frames; ++frame) {
+    for (const auto& counter : counters) EXPECT_TRUE(counter->plan.begin());
+    for (const auto& counter : counters) counter->plan.finish();
+  }
+  for (std::size_t i = 0; i < counters.size(); ++i) {
+    const auto bytes = counters[i]->plan.latest(counters[i]->count.current).download();
+    EXPECT_EQ(*reinterpret_cast<const float*>(bytes.data()), static_cast<float>(frames * (i + 1)));
   }
 }
 
