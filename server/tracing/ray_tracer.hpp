@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -87,9 +89,18 @@ class MovingStructure : public virtual AccelerationStructure {
   virtual void update(const Movement& movement) = 0;
 };
 
-/// Traces rays; all other shaders are independent of the tracer. Alpha-masked surfaces are
-/// transparent where base color alpha (level 0, nearest texel) x factor is below the cutoff.
-/// Blended surfaces stop a ray with probability alpha if the stream has a seed
+/// What a shader needs to walk a structure by itself (shaders/lib/rays/bvh.glsl).
+struct WalkedHierarchy {
+  // Uniform texel buffers in the order of their bindings; as long as the structure.
+  const gpu::Buffer& records;
+  const gpu::Buffer& triangles;
+  const gpu::Buffer& alpha_heap;
+  std::function<std::uint32_t()> root;  // of this frame
+};
+
+/// Traces rays; other shaders are independent of the tracer, unless they ask for walked().
+/// Alpha-masked surfaces are transparent where base color alpha (level 0, nearest texel) x factor
+/// is below the cutoff. Blended surfaces stop a ray with probability alpha if the stream has a seed
 /// (RayCount::blending), otherwise always. Vertex colors are ignored. Both faces of triangles are
 /// hit, at t in (t_min, t_max), 0 <= t_min; rays with an empty interval miss. Instances with a
 /// singular matrix are never hit. A tracer outlives its structures and plans.
@@ -127,6 +138,10 @@ class RayTracer {
   virtual void trace_any(gpu::FramePlan& plan, const std::string& name,
                          const AccelerationStructure& structure, const RayStream& rays,
                          gpu::BufferRef occluded) const = 0;
+
+  /// What a shader needs that makes and traces rays in one; absent where only the tracer's own
+  /// passes can trace the structure.
+  virtual std::optional<WalkedHierarchy> walked(const AccelerationStructure&) const { return {}; }
 };
 
 /// The software BVH in a compute shader.

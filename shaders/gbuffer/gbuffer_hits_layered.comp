@@ -2,4 +2,4 @@
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
 #define GBUFFER_LAYERED
-#include "lib/scene/gbuffer_hits.glsl"
+#include "lib/scene/gbuffer_round.glsl"

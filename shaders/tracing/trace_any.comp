@@ -3,12 +3,17 @@
 layout(local_size_x = 64) in;
 
 #define ANY_HIT true
+#define BVH_BINDING 2
 #include "lib/rays/bvh.glsl"
+#include "lib/rays/ray_index.glsl"
 
+layout(set = 1, binding = 0, std430) readonly buffer Count { RayCount ray_count; };
+layout(set = 1, binding = 1, std430) readonly buffer Rays { Ray rays[]; };
 layout(set = 1, binding = 5, std430) writeonly buffer Occluded { uint occluded[]; };
+layout(push_constant) uniform Constants { uint root; };
 
 void main() {
   const uint index = traced_ray(ray_count.count);
   if (index == not_traced) return;
-  occluded[index] = trace(rays[index]).instance != hit_none ? 1u : 0u;
+  occluded[index] = trace(rays[index], root, ray_count.blending).instance != hit_none ? 1u : 0u;
 }

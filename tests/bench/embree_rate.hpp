@@ -56,6 +56,10 @@ class RecordingTracer : public tracing::RayTracer {
   void trace_any(gpu::FramePlan& plan, const std::string& name,
                  const tracing::AccelerationStructure& structure, const tracing::RayStream& rays,
                  gpu::BufferRef occluded) const override;
+  std::optional<tracing::WalkedHierarchy> walked(
+      const tracing::AccelerationStructure& structure) const override {
+    return tracer_->walked(structure);
+  }
 
  private:
   void record(gpu::FramePlan& plan, const std::string& name, const tracing::RayStream& rays,

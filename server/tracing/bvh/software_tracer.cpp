@@ -1,5 +1,6 @@
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -176,20 +177,29 @@ class SoftwareTracer : public StoppableTracer {
     add_pass(plan, name, any_, structure, rays, occluded);
   }
 
+  std::optional<WalkedHierarchy> walked(const AccelerationStructure& structure) const override {
+    return walked_bvh(structure);
+  }
+
  private:
+  static WalkedHierarchy walked_bvh(const AccelerationStructure& structure) {
+    const auto& bvh = dynamic_cast<const SoftwareStructure&>(structure);
+    const SoftwareTables tables = bvh.tables();
+    return {tables.records, tables.triangles, tables.alpha_heap, [&bvh] { return bvh.root(); }};
+  }
+
   static void add_pass(gpu::FramePlan& plan, const std::string& name,
                        const gpu::ComputeProgram& program, const AccelerationStructure& structure,
                        const RayStream& rays, gpu::BufferRef results) {
-    const auto& bvh = dynamic_cast<const SoftwareStructure&>(structure);
-    const SoftwareTables tables = bvh.tables();
+    const WalkedHierarchy bvh = walked_bvh(structure);
     plan.pass(name, program)
         .read(rays.count)
         .read(rays.rays)
-        .read(plan.import(tables.records))
-        .read(plan.import(tables.triangles))
-        .read(plan.import(tables.alpha_heap))
+        .read(plan.import(bvh.records))
+        .read(plan.import(bvh.triangles))
+        .read(plan.import(bvh.alpha_heap))
         .write(results)
-        .constants([&bvh] { return bvh.root(); })
+        .constants(bvh.root)
         .dispatch_indirect(rays.count, offsetof(shared::RayCount, tracing_groups_x));
   }
 

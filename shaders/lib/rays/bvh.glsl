@@ -1,21 +1,18 @@
 // Walks the two-level hierarchy of shaders/shared/bvh.h. Every lane keeps its own stack.
-// Include after defining ANY_HIT as true (whatever is hit first ends it) or false (closest).
+// Include after defining ANY_HIT as true (whatever is hit first ends it) or false (closest), and
+// BVH_BINDING as the first of three bindings of the pass set, for what a tracing::WalkedHierarchy
+// has.
 #ifndef HELIOGRAPH_LIB_BVH_GLSL
 #define HELIOGRAPH_LIB_BVH_GLSL
 
 #include "lib/math/nearest_texel.glsl"
 #include "lib/rays/ray_blending.glsl"
-#include "lib/rays/ray_index.glsl"
 #include "shared/bvh.h"
 #include "shared/scene.h"
 
-layout(set = 1, binding = 0, std430) readonly buffer Count { RayCount ray_count; };
-layout(set = 1, binding = 1, std430) readonly buffer Rays { Ray rays[]; };
-layout(set = 1, binding = 2) uniform samplerBuffer records;
-layout(set = 1, binding = 3) uniform samplerBuffer triangles;
-layout(set = 1, binding = 4) uniform usamplerBuffer alpha_heap;
-
-layout(push_constant) uniform Constants { uint root; };
+layout(set = 1, binding = BVH_BINDING) uniform samplerBuffer records;
+layout(set = 1, binding = BVH_BINDING + 1) uniform samplerBuffer triangles;
+layout(set = 1, binding = BVH_BINDING + 2) uniform usamplerBuffer alpha_heap;
 
 // A ray in world or mesh space; t means the same in both.
 struct Line {
@@ -53,7 +50,7 @@ vec2 box_interval(vec2 x, vec2 y, vec2 z, Line line, vec2 range) {
   return vec2(near, far * 1.0000004);
 }
 
-uint blending = 0u;  // of the ray
+uint blending;  // of the ray
 
 // The mask's alpha, of 255, at barycentric (u, v) of a triangle.
 uint mask_alpha(uvec4 texels, uvec4 lookup, uint triangle, float u, float v) {
@@ -116,7 +113,7 @@ bool triangle_hit(uint slot, Line line, vec2 range, out vec3 tuv, out uvec3 word
 
 // Links still to be visited. Both levels share the stack; bvh_no_link ends each of them.
 uint stack[bvh_stack_size];
-uint waiting = 0u;
+uint waiting;
 
 void push(uint link) { stack[waiting++] = link; }
 
@@ -186,12 +183,14 @@ Line into_mesh(uint record, Line world) {
   return make_line(vec4(world.origin, 1.0) * rows, vec4(world.direction, 0.0) * rows);
 }
 
-// The closest hit, or any if ANY_HIT; hit_none where there is none.
-Hit trace(Ray ray) {
+// The closest hit, or any if ANY_HIT; hit_none where there is none. `root`: of the hierarchy;
+// `stream_blending`: RayCount::blending of the ray's stream.
+Hit trace(Ray ray, uint root, uint stream_blending) {
   Hit hit = Hit(ray.t_max, hit_none, 0u, 0.0, 0.0, 0u, 0u, 0u);
   if (!(ray.t_min < ray.t_max)) return hit;
-  blending = ray_blending(ray, ray_count.blending);
+  blending = ray_blending(ray, stream_blending);
   const Line world = make_line(ray.origin, ray.direction);
+  waiting = 0u;  // whatever the ray before has left
   push(bvh_no_link);
   uint instance_link = root;
   while (true) {

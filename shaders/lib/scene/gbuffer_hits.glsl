@@ -1,17 +1,13 @@
-// The G-buffer from camera rays instead of triangles: the surfaces that rays have met, with the same
-// signals as lib/scene/gbuffer_surface.glsl. Rays go on through back faces that are not drawn and through
-// blended surfaces. GBUFFER_LAYERED: with what extensions add to materials.
+// The G-buffer from camera rays instead of triangles: the surfaces that rays have met, with the
+// same signals as lib/scene/gbuffer_surface.glsl. Rays go on through back faces that are not drawn
+// and through blended surfaces. GBUFFER_LAYERED: with what extensions add to materials. Bindings 0
+// to 2, 4 and 5 of the pass set, and those from 14 on, are the pass's own.
+#ifndef HELIOGRAPH_GBUFFER_HITS_GLSL
+#define HELIOGRAPH_GBUFFER_HITS_GLSL
 #include "lib/scene/coverage.glsl"
 #include "lib/math/octahedral.glsl"
-#include "lib/rays/ray_index.glsl"
-#include "lib/rays/ray_stream.glsl"
 
-layout(set = 1, binding = 0, std430) readonly buffer MetCount { RayCount met_count; };
-layout(set = 1, binding = 1, std430) readonly buffer MetRays { Ray met_rays[]; };
-layout(set = 1, binding = 2, std430) readonly buffer Hits { Hit hits[]; };
 layout(set = 1, binding = 3, std430) readonly buffer Before { Vertex previous_vertices[]; };
-layout(set = 1, binding = 4, std430) buffer Count { RayCount ray_count; };
-layout(set = 1, binding = 5, std430) writeonly buffer Rays { StoredRay rays[]; };
 layout(set = 1, binding = 6, rgba32f) writeonly uniform image2D normals;
 layout(set = 1, binding = 7, rgba8) writeonly uniform image2D base_color;
 layout(set = 1, binding = 8, rgba8) writeonly uniform image2D surface;
@@ -22,13 +18,17 @@ layout(set = 1, binding = 12, r32ui) writeonly uniform uimage2D instance_id;
 #ifdef GBUFFER_LAYERED
 layout(set = 1, binding = 13, rgba32ui) writeonly uniform uimage2D surface_layers;
 #endif
-layout(push_constant) uniform Constants { uint last_round; };
 
 #include "lib/scene/hit_motion.glsl"
 
-bool passes(Ray ray, HitSurface s) {
-  return last_round == 0u && (is_open(s, ray.direction) || is_blended(s));
+HitSurface met_surface(Ray ray, Hit hit) {
+  return hit_surface(hit, ray.direction, cone_width(camera_cone(), hit.t));
 }
+
+/// Whether the ray goes on, unless this is its last round.
+bool passes(Ray ray, HitSurface s) { return is_open(s, ray.direction) || is_blended(s); }
+
+ivec2 pixel_of(Ray ray) { return ivec2(ray.pixel & 0xffffu, ray.pixel >> 16u); }
 
 /// Change of view Z from this pixel to its neighbours on the surface's plane.
 vec2 plane_slope(ivec2 pixel, HitSurface s, float view_z) {
@@ -79,22 +79,4 @@ void store_nothing(ivec2 pixel) {
   imageStore(instance_id, pixel, uvec4(0u));
 }
 
-void main() {
-  uint index = ray_index();
-  bool goes_on = false;
-  Ray ray;
-  if (index < met_count.count) {
-    ray = met_rays[index];
-    Hit hit = hits[index];
-    ivec2 pixel = ivec2(ray.pixel & 0xffffu, ray.pixel >> 16u);
-    if (hit.instance == hit_none) {
-      if (!outside_frame(pixel)) store_nothing(pixel);
-    } else {
-      HitSurface s = hit_surface(hit, ray.direction, cone_width(camera_cone(), hit.t));
-      goes_on = passes(ray, s);
-      if (!goes_on) store(pixel, hit, s);
-      ray = beyond(ray, hit);
-    }
-  }
-  APPEND_RAY(goes_on, ray)
-}
+#endif

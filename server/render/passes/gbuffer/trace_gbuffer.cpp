@@ -5,6 +5,7 @@
 #include "render/kernels/gbuffer/gbuffer_hits.hpp"
 #include "render/passes/blend/blend_surfaces.hpp"
 #include "render/passes/formats.hpp"
+#include "render/passes/gbuffer/walk_gbuffer.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/section/section.hpp"
 #include "render/passes/shading/draw_shading.hpp"
@@ -88,6 +89,7 @@ std::uint32_t camera_rounds(const FrameInputs& in) {
 }
 
 GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in) {
+  if (const auto hierarchy = walked_gbuffer(plan, in)) return walk_gbuffer(plan, in, *hierarchy);
   GBuffer gbuffer = declare_gbuffer(plan, in.moving.features_without_emission());
   const VkExtent2D extent = plan.extent();
   const kernels::Rows rows{0, static_cast<int>(extent.height)};

@@ -11,7 +11,8 @@ namespace heliograph::render {
 /// The same G-buffer as rasterize_gbuffer, found by rays through the pixels: its cost follows the
 /// pixels, not the triangles. Depth slopes are those of the surface's plane, texture detail that of
 /// a ray cone (Akenine-Möller et al. 2021). Behind three surfaces that let a ray pass, the fourth
-/// is taken as it is; in scenes with blended surfaces the eighth. `depth` stays empty.
+/// is taken as it is; in scenes with blended surfaces the eighth. `depth` stays empty. In rounds of
+/// passes, or as walk_gbuffer does.
 GBuffer trace_gbuffer(gpu::FramePlan& plan, const FrameInputs& in);
 
 /// The pass `name` that fills a stream with a ray through the sample of every pixel of these rows,
