@@ -3,6 +3,7 @@
 #include "render/passes/blend/blend_surfaces.hpp"
 #include "render/passes/compose/compose.hpp"
 #include "render/passes/compose/skybox.hpp"
+#include "render/passes/denoise/atrous.hpp"
 #include "render/passes/denoise/denoise_indirect.hpp"
 #include "render/passes/denoise/denoise_specular.hpp"
 #include "render/passes/denoise/denoise_visibility.hpp"
@@ -59,10 +60,32 @@ auto traces_visibility(const FrameInputs& in) {
   };
 }
 
-/// The signals without noise, as far as the settings denoise them.
-DenoisedSignals denoise(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
-                        const Reprojected& from, const NoisySignals& noisy) {
-  DenoisedSignals denoised{{}, noisy.specular, noisy.indirect};
+/// Whether passes for both blur visibility and reflections.
+bool blurs_together(const gpu::FramePlan& plan, const protocol::Settings& settings) {
+  return denoises_visibility(settings) && denoises_specular(settings) &&
+         !settings.shadow_blur.half_resolution &&
+         can_blur_together(plan, settings.shadow_blur, settings.specular_blur);
+}
+
+/// Visibility and reflections without noise, where blurs_together().
+void denoise_together(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                      const Reprojected& from, const NoisySignals& noisy,
+                      DenoisedSignals& denoised) {
+  std::optional<SignalBlur> visibility;
+  plan.only_when(traces_visibility(in), [&] {
+    const gpu::ImageRef combined = combine_visibility(plan, in, noisy.shadows, noisy.ambient);
+    visibility.emplace(visibility_to_blur(plan, in, gbuffer, from.guide, from.histories, combined));
+  });
+  const SignalBlur specular =
+      specular_to_blur(plan, in, gbuffer, from.guide, from.histories, *noisy.specular);
+  const BlurredPair blurred = blur_together(plan, in, *visibility, specular, traces_visibility(in));
+  denoised.visibility = blurred.visibility;
+  denoised.specular = specular_of_blurred(plan, in, blurred.specular);
+}
+
+/// Each without the other's.
+void denoise_apart(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                   const Reprojected& from, const NoisySignals& noisy, DenoisedSignals& denoised) {
   // Visibility that is not traced is not read either.
   plan.only_when(traces_visibility(in), [&] {
     denoised.visibility = combine_visibility(plan, in, noisy.shadows, noisy.ambient);
@@ -73,6 +96,17 @@ DenoisedSignals denoise(gpu::FramePlan& plan, const FrameInputs& in, const GBuff
   if (denoises_specular(in.settings)) {
     denoised.specular =
         denoise_specular(plan, in, gbuffer, from.guide, from.histories, *noisy.specular);
+  }
+}
+
+/// The signals without noise, as far as the settings denoise them.
+DenoisedSignals denoise(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                        const Reprojected& from, const NoisySignals& noisy) {
+  DenoisedSignals denoised{{}, noisy.specular, noisy.indirect};
+  if (blurs_together(plan, in.settings)) {
+    denoise_together(plan, in, gbuffer, from, noisy, denoised);
+  } else {
+    denoise_apart(plan, in, gbuffer, from, noisy, denoised);
   }
   if (denoises_indirect(in.settings)) {
     denoised.indirect =

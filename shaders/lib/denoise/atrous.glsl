@@ -10,15 +10,21 @@ layout(set = 1, binding = 3, rgba32f) writeonly uniform image2D filtered;
 layout(push_constant) uniform Constants { AtrousConstants constants; };
 #include "lib/denoise/smooth_variance.glsl"
 
-/// `noise`: standard deviation at the centre.
-vec2 tap_exponent(Center c, vec2 noise, Guide q, vec4 value, vec2 offset) {
-  float shared_exponent =
+/// `of_center`: its brightness. `noise`: standard deviation there.
+vec2 tap_exponent(Center c, vec2 of_center, vec2 noise, Guide q, vec4 value, vec2 offset) {
+  float common_part =
       depth_exponent(plane_distance(c.view_z, c.slope, c.curve, q.view_z, offset),
                      depth_allowance(c.slope, offset, c.footprint), constants.depth_sigma) +
-      normal_exponent(dot(c.normal, q.normal), constants.normal_power) +
-      signal_exponent(c.roughness, q.roughness);
-  return shared_exponent + luminance_exponent(c.brightness, brightness(value), noise,
-                                              constants.luminance_sigma, smallest_difference);
+      normal_exponent(dot(c.normal, q.normal), constants.normal_power);
+  return signal_exponent(common_part, roughness_exponent(c.roughness, q.roughness)) +
+         luminance_exponent(of_center, brightness(value), noise, constants.luminance_sigma,
+                            smallest_difference);
+}
+
+/// Of weighed taps, the pixel's own `value` among them.
+vec4 filtered_value(vec4 value, vec4 sum, vec2 total) {
+  vec4 result = sum / spread(total);
+  return has(constants, atrous_keep_variance) ? with_variance(result, variance_of(value)) : result;
 }
 
 void main() {
@@ -31,7 +37,7 @@ void main() {
     imageStore(filtered, pixel, value);
     return;
   }
-  Center c = center_at(constants, pixel, p, imageLoad(depth_slope, pixel).xy, value);
+  Center c = center_at(constants, pixel, p, imageLoad(depth_slope, pixel).xy);
   vec2 variance = has(constants, atrous_variance_prefilter) ? smooth_variance(pixel, extent)
                                                             : variance_of(value);
   vec2 noise = sqrt(max(variance, vec2(0.0)));  // standard deviation
@@ -50,10 +56,11 @@ void main() {
       vec4 value_q = imageLoad(signal, tap);
       vec2 weight =
           edge_weight(kernel_exponent[abs(x)] + kernel_exponent[abs(y)] +
-                      tap_exponent(c, noise, decode_guide(guide_q), value_q, vec2(tap - pixel)));
+                      tap_exponent(c, brightness(value), noise, decode_guide(guide_q), value_q,
+                                   vec2(tap - pixel)));
       sum += spread(weight) * value_q;
       total += weight;
     }
   }
-  imageStore(filtered, pixel, filtered_value(constants, value, sum, total));
+  imageStore(filtered, pixel, filtered_value(value, sum, total));
 }

@@ -1,6 +1,5 @@
 // Pixels and taps of the edge-avoiding a-trous wavelet filter (Dammertz et al. 2010), which is
-// guided by variance (Schied et al. 2017, equations 1 to 5). What a signal is comes from the shader
-// that includes this, as do the images.
+// guided by variance (Schied et al. 2017, equations 1 to 5), whatever the signal.
 #ifndef HELIOGRAPH_DENOISE_ATROUS_TAPS_GLSL
 #define HELIOGRAPH_DENOISE_ATROUS_TAPS_GLSL
 #include "lib/denoise/edge_stopping.glsl"
@@ -22,11 +21,10 @@ struct Center {
   vec2 slope;
   float curve;
   float footprint;
-  vec2 brightness;
 };
 
 /// `slope`: change of view Z from texel to texel.
-Center center_at(AtrousConstants constants, ivec2 pixel, Guide p, vec2 slope, vec4 value) {
+Center center_at(AtrousConstants constants, ivec2 pixel, Guide p, vec2 slope) {
   Center c;
   c.pixel = pixel;
   c.normal = p.normal;
@@ -35,7 +33,6 @@ Center center_at(AtrousConstants constants, ivec2 pixel, Guide p, vec2 slope, ve
   c.slope = slope;
   c.curve = enabled(frame_orthographic) ? 0.0 : 1.0 / c.view_z;
   c.footprint = pixel_footprint(c.view_z) * float(constants.pixels_per_texel);
-  c.brightness = brightness(value);
   return c;
 }
 
@@ -78,12 +75,6 @@ ivec2 jitter(AtrousConstants constants, ivec2 pixel, int step) {
                        frame.seed);
   ivec2 axes = min(ivec2(constants.columns, constants.rows), ivec2(1));
   return axes * ivec2(round((u - 0.5) * 0.5 * float(step)));
-}
-
-/// Of weighed taps, the pixel's own `value` among them.
-vec4 filtered_value(AtrousConstants constants, vec4 value, vec4 sum, vec2 total) {
-  vec4 result = sum / spread(total);
-  return has(constants, atrous_keep_variance) ? with_variance(result, variance_of(value)) : result;
 }
 
 #endif

@@ -4,12 +4,17 @@
 #ifndef HELIOGRAPH_EDGE_STOPPING_GLSL
 #define HELIOGRAPH_EDGE_STOPPING_GLSL
 
-/// exp(exponent) with the fraction of the power of two in place of its own power: a float's bits
-/// count octaves linearly. 1 for 0, never less than the exponential, at most 6.2 % more. Edges are
-/// not known more exactly than that.
+/// A float's bits count octaves linearly: those of 1, and how many more are `e` times as much.
+const float bits_of_one = 127.0 * 8388608.0;
+const float bits_per_exponent = 1.44269504 * 8388608.0;
+
+float weight_of_bits(float bits) { return uintBitsToFloat(uint(max(bits, 0.0))); }
+vec2 weight_of_bits(vec2 bits) { return vec2(weight_of_bits(bits.x), weight_of_bits(bits.y)); }
+
+/// exp(exponent) with the fraction of the power of two in place of its own power. 1 for 0, never
+/// less than the exponential, at most 6.2 % more. Edges are not known more exactly than that.
 float edge_weight(float exponent) {
-  const float log2_e = 1.44269504;
-  return uintBitsToFloat(uint(max(exponent * log2_e + 127.0, 0.0) * 8388608.0));
+  return weight_of_bits(exponent * bits_per_exponent + bits_of_one);
 }
 vec2 edge_weight(vec2 exponent) {
   return vec2(edge_weight(exponent.x), edge_weight(exponent.y));
@@ -38,12 +43,17 @@ float depth_exponent(float distance, float allowance, float sigma) {
 /// powers leave no weight.
 float normal_exponent(float cosine, float power) { return power * (cosine - 1.0); }
 
+/// Invisible differences in brightness.
+const float smallest_visibility_difference = 1e-3;
+const float smallest_radiance_difference = 1e-4;
+
 /// `noise` is the standard deviation of the brightness, `smallest` an invisible difference.
 vec2 luminance_exponent(vec2 p, vec2 q, vec2 noise, float sigma, float smallest) {
   return -abs(p - q) / (sigma * noise + smallest);
 }
 
 /// Lobes of different widths reflect different parts of the scene.
-float roughness_exponent(float p, float q) { return -abs(p - q) / (0.02 + 0.2 * p); }
+float roughness_falloff(float p) { return 1.0 / (0.02 + 0.2 * p); }
+float roughness_exponent(float p, float q) { return -abs(p - q) * roughness_falloff(p); }
 
 #endif

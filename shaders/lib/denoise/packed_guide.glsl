@@ -19,12 +19,26 @@ uvec2 pack_guide(Guide guide) {
 const uvec2 packed_background = uvec2(0u);
 bool is_background(uvec2 packed_guide) { return packed_guide.x == packed_background.x; }
 
+/// The octahedral normal, in steps. As bits of a float from 2^23 to 2^24, whose own steps are 1, a
+/// number takes no conversion.
+vec2 packed_axes(uvec2 packed_guide) {
+  const uint exponent = 0x4b000000u, sign_bit = 0x800u;
+  uvec2 axes = uvec2(packed_guide.y, packed_guide.y >> 12u) & 0xfffu;
+  return uintBitsToFloat(axes ^ (exponent | sign_bit)) - (8388608.0 + float(sign_bit));
+}
+
+/// The normal, of any length: filters need no more than its direction.
+vec3 packed_direction(uvec2 packed_guide) {
+  return octahedral_direction(packed_axes(packed_guide), packed_normal_steps);
+}
+
+float packed_roughness(uvec2 packed_guide) { return float(packed_guide.y >> 24u) * (1.0 / 255.0); }
+float packed_view_z(uvec2 packed_guide) { return uintBitsToFloat(packed_guide.x); }
+
 /// Of the background, too, whose normal means nothing.
 Guide unpack_guide(uvec2 packed_guide) {
-  int bits = int(packed_guide.y);
-  vec2 normal = vec2(bitfieldExtract(bits, 0, 12), bitfieldExtract(bits, 12, 12));
-  return Guide(octahedral_decode(normal / packed_normal_steps),
-               float(packed_guide.y >> 24u) / 255.0, uintBitsToFloat(packed_guide.x));
+  return Guide(octahedral_decode(packed_axes(packed_guide) / packed_normal_steps),
+               packed_roughness(packed_guide), packed_view_z(packed_guide));
 }
 
 /// Change of view Z from texel to texel in parts of view Z, for rg16f images: in scenes of any size

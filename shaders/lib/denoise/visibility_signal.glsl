@@ -1,8 +1,9 @@
 // Two scalars in one image: shadow and ambient visibility, and the variance of each.
 #ifndef HELIOGRAPH_VISIBILITY_SIGNAL_GLSL
 #define HELIOGRAPH_VISIBILITY_SIGNAL_GLSL
+#include "lib/denoise/edge_stopping.glsl"
 
-const float smallest_difference = 1e-3;
+const float smallest_difference = smallest_visibility_difference;
 
 vec2 brightness(vec4 signal) { return signal.xy; }
 vec2 variance_of(vec4 signal) { return signal.zw; }
@@ -17,9 +18,11 @@ vec4 moments_of(vec4 texel) { return texel; }
 vec2 first_moment(vec4 moments) { return moments.xy; }
 vec2 second_moment(vec4 moments) { return moments.zw; }
 
+/// Weighs values and deviations alike.
+vec4 weighing(vec2 weight) { return weight.xyxy; }
 /// Values are weighed, variances by the square of the weight.
 vec4 spread(vec2 weight) { return vec4(weight, weight * weight); }
-/// What else keeps pixels of two roughnesses apart, as an exponent.
-float signal_exponent(float p, float q) { return 0.0; }
+/// Of a weight: of what all signals have in common, and of the difference in roughness.
+vec2 signal_exponent(float common_part, float of_roughness) { return vec2(common_part); }
 
 #endif

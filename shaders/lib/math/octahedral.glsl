@@ -8,12 +8,14 @@ vec2 octahedral_encode(vec3 direction) {
   return direction.z >= 0.0 ? p : folded;
 }
 
-vec3 octahedral_decode(vec2 p) {
-  vec3 direction = vec3(p, 1.0 - abs(p.x) - abs(p.y));
-  float below = max(-direction.z, 0.0);
-  direction.x += direction.x >= 0.0 ? -below : below;
-  direction.y += direction.y >= 0.0 ? -below : below;
-  return normalize(direction);
+/// Of any length; `p` in [-side, side]. What lies below folds back, away from p's signs.
+vec3 octahedral_direction(vec2 p, float side) {
+  float z = side - abs(p.x) - abs(p.y);
+  uvec2 signs = floatBitsToUint(p) & 0x80000000u;
+  vec2 fold = uintBitsToFloat(signs | floatBitsToUint(max(-z, 0.0)));
+  return vec3(p - fold, z);
 }
+
+vec3 octahedral_decode(vec2 p) { return normalize(octahedral_direction(p, 1.0)); }
 
 #endif

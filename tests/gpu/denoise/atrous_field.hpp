@@ -152,6 +152,38 @@ class AtrousReference {
   bool cheap_;
 };
 
+/// A blur from the level of `given` on.
+inline render::AtrousConfig filter_config(const FrameRig& rig, const shared::AtrousConstants& given,
+                                          bool specular, int iterations,
+                                          protocol::BlurKernel kernel) {
+  const auto constants = [given](const render::KernelShape& shape) {
+    shared::AtrousConstants made = given;
+    made.level = given.level + shape.level;
+    made.columns = shape.columns;
+    made.rows = shape.rows;
+    return made;
+  };
+  const auto program = [&rig](const gpu::ShaderBinary& shader) {
+    return rig.inputs().program(shader);
+  };
+  const render::AtrousHalfPrograms halves =
+      specular ? render::AtrousHalfPrograms{program(shaders::specular_atrous_half_first),
+                                            program(shaders::specular_atrous_half),
+                                            program(shaders::specular_atrous_half_last)}
+               : render::AtrousHalfPrograms{program(shaders::visibility_atrous_half_first),
+                                            program(shaders::visibility_atrous_half),
+                                            program(shaders::visibility_atrous_half_last)};
+  return {.name = specular ? "specular.atrous" : "visibility.atrous",
+          .buffers = specular ? render::specular_atrous_buffers : render::visibility_atrous_buffers,
+          .program = program(specular ? shaders::specular_atrous : shaders::visibility_atrous),
+          .half_programs = halves,
+          .kernel = render::kernels::specular_atrous,
+          .halves_kernel = render::kernels::specular_atrous_halves,
+          .iterations = iterations,
+          .shape = kernel,
+          .constants = constants};
+}
+
 /// A rig whose blur has `iterations` levels from that of `constants`.
 struct FilterRig {
   /// `fed_back`: the iteration whose result is kept for the next frame, if any.
@@ -163,37 +195,11 @@ struct FilterRig {
               rig.input("slope", VK_FORMAT_R32G32_SFLOAT, in.slope),
               rig.input("signal", render::formats::four_floats, in.signal),
               packed_input(rig, in.guide, in.slope)} {
-    const auto constants = [given](const render::KernelShape& shape) {
-      shared::AtrousConstants made = given;
-      made.level = given.level + shape.level;
-      made.columns = shape.columns;
-      made.rows = shape.rows;
-      return made;
-    };
-    const auto program = [this](const gpu::ShaderBinary& shader) {
-      return rig.inputs().program(shader);
-    };
-    const render::AtrousHalfPrograms halves =
-        specular ? render::AtrousHalfPrograms{program(shaders::specular_atrous_half_first),
-                                              program(shaders::specular_atrous_half),
-                                              program(shaders::specular_atrous_half_last)}
-                 : render::AtrousHalfPrograms{program(shaders::visibility_atrous_half_first),
-                                              program(shaders::visibility_atrous_half),
-                                              program(shaders::visibility_atrous_half_last)};
     std::optional<render::Feedback> feedback;
     if (fed_back) feedback = {*fed_back, [this](gpu::ImageRef image) { kept = image; }};
     rig.plan().use_host_kernels(false);  // atrous_kernel_test.cpp compares the host kernel
-    filtered = render::blur(
-        rig.plan(), rig.inputs(), input,
-        {.name = "test",
-         .buffers = render::specular_atrous_buffers,
-         .program = program(specular ? shaders::specular_atrous : shaders::visibility_atrous),
-         .half_programs = halves,
-         .kernel = render::kernels::specular_atrous,
-         .iterations = iterations,
-         .shape = kernel,
-         .constants = constants},
-        feedback);
+    filtered = render::blur(rig.plan(), rig.inputs(), input,
+                            filter_config(rig, given, specular, iterations, kernel), feedback);
   }
   render::FloatImage run() {
     rig.run();

@@ -13,6 +13,7 @@ STAGES = (
     ("reflection accumulation", ("specular.temporal", "specular.rectify",
                                  "specular.variance")),
     ("reflection blur", ("specular.",)),
+    ("shadow and reflection blur", ("visibility_specular.",)),  # one pass for both, on GPUs
     ("indirect light", ("indirect.", "cache.", "radiance_cache.", "guide.", "path_guide.")),
     ("composition and display", ("",)),
 )

@@ -148,7 +148,7 @@ def stages_figure(results, preset):
 
 
 STAGE_COLORS = ("#7d7d7d", "#3d8bdb", "#5f9ea0", "#2f9e5b", "#a58a2e", "#e0513f", "#cf8000",
-                "#c95fa6", "#8d74d6", "#d97b5a")
+                "#c95fa6", "#b04a4a", "#8d74d6", "#d97b5a")
 
 
 def front(points):

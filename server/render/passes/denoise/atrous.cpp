@@ -12,6 +12,28 @@ namespace {
 using formats::four_floats;
 using formats::four_halves;
 
+/// What the passes of a blur by halves write.
+struct HalfImages {
+  gpu::ImageRef half;  // after the first half of an iteration
+  /// After the second, which does not read the image that it writes: one serves all iterations.
+  std::optional<gpu::ImageRef> between;
+  gpu::ImageRef result;
+};
+
+/// Of the first or the second half. Which of them is the one across changes from iteration to
+/// iteration and frame to frame: otherwise all streaks would have one direction.
+auto half_shape(const FrameInputs& in, int level, int side) {
+  return [&frame = in.constants, level, side](bool first_half) {
+    const bool columns =
+        ((frame.sample_index + static_cast<std::uint32_t>(level)) % 2 == 0) == first_half;
+    return KernelShape{level, columns ? 2 : 0, columns ? 0 : 2, first_half, side};
+  };
+}
+
+std::string half_name(const std::string& blur, int level, bool first) {
+  return blur + "." + std::to_string(level) + (first ? ".first" : ".second");
+}
+
 /// One blur under declaration.
 class Blur {
  public:
@@ -58,7 +80,7 @@ class Blur {
                                           .depth_slope = input_.depth_slope,
                                           .signal = signal,
                                           .filtered = to})
-          .constants([constants = config_.constants, shape = half_shape(level)] {
+          .constants([constants = config_.constants, shape = half_shape(in_, level, side_)] {
             return kernels::AtrousHalves{constants(shape(true)), constants(shape(false))};
           })
           .host(config_.halves_kernel, in_.constants);
@@ -68,22 +90,25 @@ class Blur {
     return signal;
   }
 
-  /// A pass of the device for each half. What is fed back holds 32 bits, as the result does.
-  gpu::ImageRef halves() {
+  HalfImages half_images() {
+    HalfImages made{image(config_.buffers.half, four_halves), std::nullopt, result_};
+    for (int level = 0; level <= last_ && !made.between; ++level) {
+      if (!to_floats(level)) made.between = image(config_.buffers.even, four_halves);
+    }
+    return made;
+  }
+
+  /// A pass of the device for each half.
+  gpu::ImageRef halves(const HalfImages& images) {
     const AtrousHalfPrograms& programs = config_.half_programs;
-    const gpu::ImageRef half = image(config_.buffers.half, four_halves);
-    // The second half does not read the image that it writes: one serves all iterations.
-    std::optional<gpu::ImageRef> between;
     gpu::ImageRef signal = input_.signal;
     bool in_floats = true;
     for (int level = 0; level <= last_; ++level) {
-      const bool to_floats = level == last_ || feeds_back(level);
-      if (!to_floats && !between) between = image(config_.buffers.even, four_halves);
-      const gpu::ImageRef to = to_floats ? result_ : *between;
-      half_pass(level, true, in_floats ? programs.first : programs.between, signal, half);
-      half_pass(level, false, to_floats ? programs.last : programs.between, half, to);
+      const gpu::ImageRef to = to_floats(level) ? result_ : *images.between;
+      half_pass(level, true, in_floats ? programs.first : programs.between, signal, images.half);
+      half_pass(level, false, to_floats(level) ? programs.last : programs.between, images.half, to);
       signal = to;
-      in_floats = to_floats;
+      in_floats = to_floats(level);
       feed_back(level, signal);
     }
     return signal;
@@ -95,18 +120,10 @@ class Blur {
   }
   std::string name(int level) const { return config_.name + "." + std::to_string(level); }
   bool feeds_back(int level) const { return feedback_ && feedback_->level == level; }
+  /// What is fed back holds 32 bits, as the result does.
+  bool to_floats(int level) const { return level == last_ || feeds_back(level); }
   void feed_back(int level, gpu::ImageRef filtered) const {
     if (feeds_back(level)) feedback_->keep(filtered);
-  }
-
-  /// Of the first or the second half. Which of them is the one across changes from iteration to
-  /// iteration and frame to frame: otherwise all streaks would have one direction.
-  std::function<KernelShape(bool)> half_shape(int level) const {
-    return [&frame = in_.constants, level, side = side_](bool first_half) {
-      const bool columns =
-          ((frame.sample_index + static_cast<std::uint32_t>(level)) % 2 == 0) == first_half;
-      return KernelShape{level, columns ? 2 : 0, columns ? 0 : 2, first_half, side};
-    };
   }
 
   gpu::PassBuilder pass(const std::string& name, const gpu::ProgramSource& program,
@@ -120,9 +137,9 @@ class Blur {
 
   void half_pass(int level, bool first, const gpu::ProgramSource& program, gpu::ImageRef from,
                  gpu::ImageRef to) {
-    pass(name(level) + (first ? ".first" : ".second"), program,
+    pass(half_name(config_.name, level, first), program,
          {input_.packed.surface.value(), input_.packed.slope.value(), from, to},
-         [shape = half_shape(level), first] { return shape(first); });
+         [shape = half_shape(in_, level, side_), first] { return shape(first); });
   }
 
   gpu::FramePlan& plan_;
@@ -135,6 +152,72 @@ class Blur {
   int last_;
   gpu::ImageRef result_;
 };
+
+/// What a pass for two signals reads or writes of each.
+struct PairImages {
+  gpu::ImageRef visibility, specular;
+};
+
+/// The halves of two blurs of as many iterations at full size, each a pass for both signals.
+class PairedHalves {
+ public:
+  PairedHalves(gpu::FramePlan& plan, const FrameInputs& in, const SignalBlur& visibility,
+               const SignalBlur& specular)
+      : plan_(plan), in_(in), visibility_(visibility), specular_(specular) {}
+
+  void declare(const HalfImages& visibility, const HalfImages& specular) {
+    const AtrousHalfPrograms programs{in_.program(shaders::visibility_specular_atrous_first),
+                                      in_.program(shaders::visibility_specular_atrous),
+                                      in_.program(shaders::visibility_specular_atrous_last)};
+    const PairImages half{visibility.half, specular.half};
+    PairImages signal{visibility_.input.signal, specular_.input.signal};
+    const int last = visibility_.config.iterations - 1;
+    for (int level = 0; level <= last; ++level) {
+      const PairImages to = level == last
+                                ? PairImages{visibility.result, specular.result}
+                                : PairImages{visibility.between.value(), specular.between.value()};
+      half_pass(level, true, level == 0 ? programs.first : programs.between, signal, half);
+      half_pass(level, false, level == last ? programs.last : programs.between, half, to);
+      signal = to;
+    }
+  }
+
+ private:
+  /// As the shader's push constants.
+  struct Constants {
+    shared::AtrousConstants visibility, specular;
+  };
+
+  void half_pass(int level, bool first, const gpu::ProgramSource& program, const PairImages& from,
+                 const PairImages& to) {
+    const PackedGuide& guide = visibility_.input.packed;
+    plan_.pass(half_name("visibility_specular.atrous", level, first), program)
+        .read(guide.surface.value())
+        .read(guide.slope.value())
+        .read(from.visibility)
+        .read(from.specular)
+        .write(to.visibility)
+        .write(to.specular)
+        .constants([visibility = visibility_.config.constants,
+                    specular = specular_.config.constants, shape = half_shape(in_, level, 1),
+                    first] {
+          return Constants{visibility(shape(first)), specular(shape(first))};
+        })
+        .dispatch(gpu::each_pixel());
+  }
+
+  gpu::FramePlan& plan_;
+  const FrameInputs& in_;
+  const SignalBlur& visibility_;
+  const SignalBlur& specular_;
+};
+
+/// Whether the taps of both are the same texels, and their surfaces weigh the same.
+bool have_the_same_taps(const shared::AtrousConstants& a, const shared::AtrousConstants& b) {
+  constexpr std::uint32_t same = shared::atrous_variance_prefilter | shared::atrous_jitter;
+  return a.normal_power == b.normal_power && a.depth_sigma == b.depth_sigma &&
+         a.start_threshold == b.start_threshold && ((a.flags ^ b.flags) & same) == 0;
+}
 
 }  // namespace
 
@@ -159,7 +242,39 @@ gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const AtrousInpu
                    const AtrousConfig& config, std::optional<Feedback> feedback) {
   Blur made(plan, in, input, config, feedback);
   if (config.shape == protocol::BlurKernel::full) return made.whole();
-  return plan.uses_host_kernels() ? made.halves_at_once() : made.halves();
+  return plan.uses_host_kernels() ? made.halves_at_once() : made.halves(made.half_images());
+}
+
+bool can_blur_together(const gpu::FramePlan& plan, const protocol::BlurSettings& a,
+                       const protocol::BlurSettings& b) {
+  const auto by_plain_halves = [](const protocol::BlurSettings& settings) {
+    return settings.enabled && settings.kernel == protocol::BlurKernel::separable &&
+           !feeds_back(settings);
+  };
+  return !plan.uses_host_kernels() && !plan.device().is_cpu() && by_plain_halves(a) &&
+         by_plain_halves(b) && a.iterations == b.iterations;
+}
+
+BlurredPair blur_together(gpu::FramePlan& plan, const FrameInputs& in, const SignalBlur& visibility,
+                          const SignalBlur& specular,
+                          const std::function<bool()>& traces_visibility) {
+  const std::optional<Feedback> none;
+  Blur visibility_alone(plan, in, visibility.input, visibility.config, none);
+  Blur specular_alone(plan, in, specular.input, specular.config, none);
+  const HalfImages visibility_images = visibility_alone.half_images();
+  const HalfImages specular_images = specular_alone.half_images();
+  const auto together = [traces_visibility, a = visibility.config.constants,
+                         b = specular.config.constants] {
+    return traces_visibility() && have_the_same_taps(a({}), b({}));
+  };
+  const auto apart = [&] {
+    plan.only_when(traces_visibility, [&] { visibility_alone.halves(visibility_images); });
+    specular_alone.halves(specular_images);
+  };
+  PairedHalves pair(plan, in, visibility, specular);
+  plan.only_when(
+      together, [&] { pair.declare(visibility_images, specular_images); }, apart);
+  return {visibility_images.result, specular_images.result};
 }
 
 }  // namespace heliograph::render

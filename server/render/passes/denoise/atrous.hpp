@@ -103,6 +103,12 @@ struct AtrousConfig {
   std::uint32_t pixels_per_texel = 1;  // of the images, along each axis
 };
 
+/// A blur without feedback.
+struct SignalBlur {
+  AtrousInput input;
+  AtrousConfig config;
+};
+
 /// A blur of radiance with the variance of its brightness.
 AtrousConfig radiance_atrous_config(
     const FrameInputs& in, std::string name, const AtrousBuffers& buffers, int iterations,
@@ -121,5 +127,19 @@ struct Feedback {
 /// @return the last iteration's result
 gpu::ImageRef blur(gpu::FramePlan& plan, const FrameInputs& in, const AtrousInput& input,
                    const AtrousConfig& config, std::optional<Feedback> feedback);
+
+/// Whether blur_together() knows the case: halves by shaders on a GPU, where nothing is fed back.
+bool can_blur_together(const gpu::FramePlan& plan, const protocol::BlurSettings& a,
+                       const protocol::BlurSettings& b);
+
+struct BlurredPair {
+  gpu::ImageRef visibility, specular;
+};
+/// Blurs of both signals at full size, with the same guide: by passes for both, which weigh
+/// surfaces once, in frames where both sample the same texels; otherwise as blur() does. Visibility
+/// is blurred in frames where `traces_visibility` is true.
+BlurredPair blur_together(gpu::FramePlan& plan, const FrameInputs& in, const SignalBlur& visibility,
+                          const SignalBlur& specular,
+                          const std::function<bool()>& traces_visibility);
 
 }  // namespace heliograph::render

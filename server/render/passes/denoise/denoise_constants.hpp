@@ -69,6 +69,11 @@ struct KernelShape {
   int pixels_per_texel = 1;  // of the images, along each axis
 };
 
+/// Whether the result of an iteration becomes the history of the next frame.
+inline bool feeds_back(const protocol::BlurSettings& settings) {
+  return settings.enabled && settings.feedback >= 0 && settings.feedback < settings.iterations;
+}
+
 inline shared::AtrousConstants atrous_constants(const protocol::BlurSettings& settings,
                                                 const SceneMotion& motion,
                                                 const KernelShape& shape) {

@@ -25,8 +25,6 @@ AtrousConfig indirect_atrous_config(const FrameInputs& in) {
 gpu::ImageRef denoise(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                       const Guide& guide, const SampleHistories& histories, gpu::ImageRef noisy) {
   const auto& blurring = in.settings.indirect_blur;
-  const bool feedback =
-      blurring.enabled && blurring.feedback >= 0 && blurring.feedback < blurring.iterations;
   const RadianceChannel channel = indirect_channel(plan, in, histories);
   const AccumulatedSignal accumulated =
       accumulate_radiance(plan, in, gbuffer, guide, channel, noisy);
@@ -35,9 +33,10 @@ gpu::ImageRef denoise(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer
     feed_radiance_back(plan, in, channel, accumulated, filtered);
   };
   estimate_radiance_variance(plan, in, gbuffer, guide, channel, accumulated);
-  return blur(plan, in, {guide.surface, gbuffer.depth_slope, accumulated.signal, guide.packed},
-              indirect_atrous_config(in),
-              feedback ? std::optional(Feedback{blurring.feedback, feed_back}) : std::nullopt);
+  return blur(
+      plan, in, {guide.surface, gbuffer.depth_slope, accumulated.signal, guide.packed},
+      indirect_atrous_config(in),
+      feeds_back(blurring) ? std::optional(Feedback{blurring.feedback, feed_back}) : std::nullopt);
 }
 
 struct Halved {

@@ -1,6 +1,5 @@
 #include "render/passes/denoise/denoise_specular.hpp"
 
-#include "render/passes/denoise/atrous.hpp"
 #include "render/passes/denoise/denoise_constants.hpp"
 #include "render/passes/denoise/temporal.hpp"
 #include "render/passes/formats.hpp"
@@ -56,21 +55,28 @@ AtrousConfig specular_atrous_config(const FrameInputs& in) {
                                 settings.kernel, constants);
 }
 
+bool compresses(const FrameInputs& in) {
+  return in.settings.reinhard.mode != protocol::Reinhard::off;
+}
+
+/// Reflections over the frames until this one, under Reinhard's curve where that is on.
+AccumulatedSignal accumulate_specular(gpu::FramePlan& plan, const FrameInputs& in,
+                                      const GBuffer& gbuffer, const Guide& guide,
+                                      const RadianceChannel& channel, gpu::ImageRef noisy) {
+  const gpu::ImageRef signal = compresses(in) ? compress(plan, in, noisy) : noisy;
+  return accumulate_radiance(plan, in, gbuffer, guide, channel, signal);
+}
+
 }  // namespace
 
 gpu::ImageRef denoise_specular(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                                const Guide& guide, const SampleHistories& histories,
                                gpu::ImageRef noisy) {
   const auto& blurring = in.settings.specular_blur;
-  const bool feedback =
-      blurring.enabled && blurring.feedback >= 0 && blurring.feedback < blurring.iterations;
-  const bool tone_compressed = in.settings.reinhard.mode != protocol::Reinhard::off;
-
-  gpu::ImageRef signal = tone_compressed ? compress(plan, in, noisy) : noisy;
   const RadianceChannel channel = specular_channel(in, histories);
   const AccumulatedSignal accumulated =
-      accumulate_radiance(plan, in, gbuffer, guide, channel, signal);
-  signal = accumulated.signal;
+      accumulate_specular(plan, in, gbuffer, guide, channel, noisy);
+  gpu::ImageRef signal = accumulated.signal;
   if (blurring.enabled) {
     const auto feed_back = [&](gpu::ImageRef filtered) {
       feed_radiance_back(plan, in, channel, accumulated, filtered);
@@ -78,9 +84,26 @@ gpu::ImageRef denoise_specular(gpu::FramePlan& plan, const FrameInputs& in, cons
     estimate_radiance_variance(plan, in, gbuffer, guide, channel, accumulated);
     signal = blur(plan, in, {guide.surface, gbuffer.depth_slope, accumulated.signal, guide.packed},
                   specular_atrous_config(in),
-                  feedback ? std::optional(Feedback{blurring.feedback, feed_back}) : std::nullopt);
+                  feeds_back(blurring) ? std::optional(Feedback{blurring.feedback, feed_back})
+                                       : std::nullopt);
   }
-  return tone_compressed ? expand(plan, in, signal) : signal;
+  return specular_of_blurred(plan, in, signal);
+}
+
+SignalBlur specular_to_blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                            const Guide& guide, const SampleHistories& histories,
+                            gpu::ImageRef noisy) {
+  const RadianceChannel channel = specular_channel(in, histories);
+  const AccumulatedSignal accumulated =
+      accumulate_specular(plan, in, gbuffer, guide, channel, noisy);
+  estimate_radiance_variance(plan, in, gbuffer, guide, channel, accumulated);
+  return {{guide.surface, gbuffer.depth_slope, accumulated.signal, guide.packed},
+          specular_atrous_config(in)};
+}
+
+gpu::ImageRef specular_of_blurred(gpu::FramePlan& plan, const FrameInputs& in,
+                                  gpu::ImageRef blurred) {
+  return compresses(in) ? expand(plan, in, blurred) : blurred;
 }
 
 }  // namespace heliograph::render

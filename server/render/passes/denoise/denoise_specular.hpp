@@ -1,5 +1,6 @@
 #pragma once
 
+#include "render/passes/denoise/atrous.hpp"
 #include "render/passes/denoise/temporal.hpp"
 
 namespace heliograph::render {
@@ -16,5 +17,12 @@ inline constexpr struct DenoiseSpecularBuffers {
 gpu::ImageRef denoise_specular(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                                const Guide& guide, const SampleHistories& histories,
                                gpu::ImageRef noisy);
+
+/// The same up to the blur, which feeds nothing back, and what follows the blur.
+SignalBlur specular_to_blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                            const Guide& guide, const SampleHistories& histories,
+                            gpu::ImageRef noisy);
+gpu::ImageRef specular_of_blurred(gpu::FramePlan& plan, const FrameInputs& in,
+                                  gpu::ImageRef blurred);
 
 }  // namespace heliograph::render

@@ -5,7 +5,6 @@
 
 #include "render/kernels/signals.hpp"
 #include "render/kernels/visibility_half.hpp"
-#include "render/passes/denoise/atrous.hpp"
 #include "render/passes/denoise/denoise_constants.hpp"
 #include "render/passes/denoise/temporal.hpp"
 #include "render/passes/formats.hpp"
@@ -119,9 +118,6 @@ gpu::ImageRef denoise_visibility(gpu::FramePlan& plan, const FrameInputs& in,
                                  const GBuffer& gbuffer, const Guide& guide,
                                  const SampleHistories& histories, gpu::ImageRef noisy) {
   const auto& blurring = in.settings.shadow_blur;
-  const bool feedback =
-      blurring.enabled && blurring.feedback >= 0 && blurring.feedback < blurring.iterations;
-
   const AccumulatedSignal accumulated = accumulate_visibility(plan, in, guide, histories, noisy);
   if (!blurring.enabled) return accumulated.signal;
 
@@ -130,9 +126,19 @@ gpu::ImageRef denoise_visibility(gpu::FramePlan& plan, const FrameInputs& in,
   };
   estimate_visibility_variance(plan, in, gbuffer, guide, accumulated);
   const AtrousInput input{guide.surface, gbuffer.depth_slope, accumulated.signal, guide.packed};
-  if (blurring.half_resolution && !feedback) return blur_at_half_size(plan, in, input);
-  return blur(plan, in, input, visibility_atrous_config(in, visibility_atrous_buffers),
-              feedback ? std::optional(Feedback{blurring.feedback, feed_back}) : std::nullopt);
+  if (blurring.half_resolution && !feeds_back(blurring)) return blur_at_half_size(plan, in, input);
+  return blur(
+      plan, in, input, visibility_atrous_config(in, visibility_atrous_buffers),
+      feeds_back(blurring) ? std::optional(Feedback{blurring.feedback, feed_back}) : std::nullopt);
+}
+
+SignalBlur visibility_to_blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                              const Guide& guide, const SampleHistories& histories,
+                              gpu::ImageRef noisy) {
+  const AccumulatedSignal accumulated = accumulate_visibility(plan, in, guide, histories, noisy);
+  estimate_visibility_variance(plan, in, gbuffer, guide, accumulated);
+  return {{guide.surface, gbuffer.depth_slope, accumulated.signal, guide.packed},
+          visibility_atrous_config(in, visibility_atrous_buffers)};
 }
 
 }  // namespace heliograph::render

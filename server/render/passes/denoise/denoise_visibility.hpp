@@ -1,5 +1,6 @@
 #pragma once
 
+#include "render/passes/denoise/atrous.hpp"
 #include "render/passes/denoise/temporal.hpp"
 
 namespace heliograph::render {
@@ -33,5 +34,10 @@ gpu::ImageRef combine_visibility(gpu::FramePlan& plan, const FrameInputs& in, gp
 gpu::ImageRef denoise_visibility(gpu::FramePlan& plan, const FrameInputs& in,
                                  const GBuffer& gbuffer, const Guide& guide,
                                  const SampleHistories& histories, gpu::ImageRef noisy);
+
+/// The same up to the blur, which is to be at full size and feeds nothing back.
+SignalBlur visibility_to_blur(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                              const Guide& guide, const SampleHistories& histories,
+                              gpu::ImageRef noisy);
 
 }  // namespace heliograph::render

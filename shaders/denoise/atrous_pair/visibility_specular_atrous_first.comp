@@ -1,0 +1,4 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#define SIGNAL_IN_FLOATS
+#include "lib/denoise/atrous_half_pair.glsl"
