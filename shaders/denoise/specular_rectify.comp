@@ -24,7 +24,10 @@ const int group_side = 16;
 const int most_radius = 8;  // of settings
 const int most_side = group_side + 2 * most_radius;
 const float no_surface = -1.0, unsampled = 0.0, sampled = 1.0;
-shared vec4 nearby[most_side * most_side];  // YCoCg of `fast`; a: one of the above
+// YCoCg of `fast`; a: one of the above. Then, for every row of the group, the sums of the columns
+// beside each other: two texels each, with colours and how many were sampled, and with squares and
+// how many show a surface.
+shared vec4 nearby[most_side * most_side];
 
 /// What the windows of a group cover, read once.
 void read_nearby(bool gradient) {
@@ -42,23 +45,51 @@ void read_nearby(bool gradient) {
   barrier();
 }
 
+const int group_threads = group_side * group_side;
+const int most_sums = (most_side * group_side + group_threads - 1) / group_threads;  // of a thread
+
+/// Adds up the columns of all windows, which rows of windows share.
+void sum_columns(int side) {
+  vec4 colors[most_sums], squares[most_sums];
+  for (int k = 0; k < most_sums; ++k) {
+    colors[k] = squares[k] = vec4(0.0);
+    int i = int(gl_LocalInvocationIndex) + k * group_threads;
+    if (i >= side * group_side) break;
+    for (int y = 0; y <= 2 * constants.radius; ++y) {
+      vec4 recent = nearby[i + y * side];
+      if (recent.a == no_surface) continue;
+      squares[k].a += 1.0;
+      if (recent.a != sampled) continue;
+      colors[k] += vec4(recent.rgb, 1.0);
+      squares[k].rgb += recent.rgb * recent.rgb;
+    }
+  }
+  barrier();
+  for (int k = 0; k < most_sums; ++k) {
+    int i = int(gl_LocalInvocationIndex) + k * group_threads;
+    if (i >= side * group_side) break;
+    nearby[2 * i] = colors[k];
+    nearby[2 * i + 1] = squares[k];
+  }
+  barrier();
+}
+
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   bool gradient = constants.rectification == rectification_gradient;
   read_nearby(gradient);
-  int reach = 2 * constants.radius, side = group_side + reach;
+  int side = group_side + 2 * constants.radius;
   int first = int(gl_LocalInvocationID.y) * side + int(gl_LocalInvocationID.x);
-  if (nearby[first + constants.radius * (side + 1)].a == no_surface) return;
-  Window window = empty_window();
-  float surfaces = 0.0;
-  for (int y = 0; y <= reach; ++y) {
-    for (int x = 0; x <= reach; ++x) {
-      vec4 recent = nearby[first + y * side + x];
-      if (recent.a == no_surface) continue;
-      surfaces += 1.0;
-      if (recent.a == sampled) add(window, recent.rgb);
-    }
+  bool has_surface = nearby[first + constants.radius * (side + 1)].a != no_surface;
+  sum_columns(side);
+  if (!has_surface) return;
+  vec4 colors = vec4(0.0), squares = vec4(0.0);
+  for (int x = 0; x <= 2 * constants.radius; ++x) {
+    colors += nearby[2 * (first + x)];
+    squares += nearby[2 * (first + x) + 1];
   }
+  Window window = Window(Box(vec3(0.0), vec3(0.0)), colors.rgb, squares.rgb, colors.a);
+  float surfaces = squares.a;
   vec4 state = imageLoad(history, pixel);
   vec4 value = imageLoad(signal, pixel);
   float bright = window.sum.x / max(window.count, 1.0);
