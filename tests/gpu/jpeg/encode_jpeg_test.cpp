@@ -63,6 +63,14 @@ glm::ivec3 saturated(int x, int y) {
   const int kind = (x / 5 + y / 3) % 6;
   return {kind < 3 ? 255 : 0, kind % 2 ? 255 : 0, kind % 3 ? 0 : 255};
 }
+/// The highest frequencies alone: behind long runs of zeros.
+glm::ivec3 stripes(int x, int y) {
+  return {x & 1 ? 255 : 0, y & 1 ? 255 : 0, x & 1 ? 255 : 0};
+}
+/// Single pixels, which have every frequency, among blocks of none.
+glm::ivec3 dots(int x, int y) {
+  return random_at(x, y) % 61 == 0 ? glm::ivec3(255, 127, 0) : glm::ivec3(0, 0, 255);
+}
 /// Soft shades, edges and some grain, as frames have.
 glm::ivec3 scene(int x, int y) {
   const float u = static_cast<float>(x), v = static_cast<float>(y);
@@ -182,7 +190,7 @@ TEST(EncodeJpeg, DecodesToPixelsOfLibraryInEverySize) {
 }
 
 TEST(EncodeJpeg, DecodesToPixelsOfLibraryWhateverIsShown) {
-  for (const auto color : {flat, noise, black_and_white, saturated}) {
+  for (const auto color : {flat, noise, black_and_white, saturated, stripes, dots}) {
     for (const int quality : {1, 80, 100}) {
       SCOPED_TRACE(quality);
       expect_same_as_library(paint(133, 71, color), quality);
