@@ -8,12 +8,16 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 1, binding = 0, rgba16f) readonly uniform image2D mean;
 layout(set = 1, binding = 1, r32f) readonly uniform image2D mean_weight;  // of `mean`
 layout(set = 1, binding = 2, rgba32f) uniform image2D resolved;
-layout(push_constant) uniform Constants { uvec2 shown; };  // size of all images, pixels
+layout(push_constant) uniform Constants {
+  uvec2 shown;           // size of all images, pixels
+  float uniform_weight;  // of `mean` in all pixels; below 0: that of `mean_weight`
+};
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(uvec2(pixel), shown))) return;
   vec4 color = imageLoad(resolved, pixel);
-  color.rgb = mix(color.rgb, imageLoad(mean, pixel).rgb, imageLoad(mean_weight, pixel).r);
+  float weight = uniform_weight < 0.0 ? imageLoad(mean_weight, pixel).r : uniform_weight;
+  color.rgb = mix(color.rgb, imageLoad(mean, pixel).rgb, weight);
   imageStore(resolved, pixel, color);
 }

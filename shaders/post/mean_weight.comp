@@ -12,11 +12,7 @@ layout(set = 1, binding = 0, rgba32f) readonly uniform image2D radiance;
 layout(set = 1, binding = 1, rgba16f) readonly uniform image2D filtered;  // a: deviation
 layout(set = 1, binding = 2, std140) uniform ExposureBlock { ExposureState exposure; };
 layout(set = 1, binding = 3, r32f) writeonly uniform image2D mean_weight;
-layout(push_constant) uniform Constants {
-  uvec2 shown;   // size of all images, pixels
-  float share;   // the weight of every pixel, where it does not follow from noise
-  uint by_noise; // 0: `share` is the weight
-};
+layout(push_constant) uniform Constants { uvec2 shown; };  // size of all images, pixels
 
 const int window = 2;  // pixels on either side that are averaged
 const int reach = window + 1;
@@ -38,11 +34,6 @@ vec2 compared(ivec2 pixel) {
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  bool inside = all(lessThan(uvec2(pixel), shown));
-  if (by_noise == 0u) {
-    if (inside) imageStore(mean_weight, pixel, vec4(share));
-    return;
-  }
   ivec2 corner = ivec2(gl_WorkGroupID.xy) * 8 - reach;
   ivec2 last = ivec2(shown) - 1;
   for (int i = int(gl_LocalInvocationIndex); i < side * side; i += 64) {
@@ -62,7 +53,7 @@ void main() {
     weights[i] = sum.y > sum.x ? 1.0 - sum.x / sum.y : 0.0;
   }
   barrier();
-  if (!inside) return;
+  if (any(greaterThanEqual(uvec2(pixel), shown))) return;
   float total = 0.0;
   ivec2 own = ivec2(gl_LocalInvocationID.xy);
   for (int i = 0; i < 9; ++i) total += weights[(own.y + i / 3) * weights_side + own.x + i % 3];

@@ -14,8 +14,9 @@ layout(set = 1, binding = 2, r32f) readonly uniform image2D mean_weight;  // of 
 layout(set = 1, binding = 3, std140) uniform ExposureBlock { ExposureState exposure; };
 layout(set = 1, binding = 4, rgba8) writeonly uniform image2D shown;
 layout(push_constant) uniform Constants {
-  uvec2 shown_size;  // of the frame that is shown, pixels
-  uvec2 drawn;       // of `radiance`, whose nearest pixels are shown
+  uvec2 shown_size;      // of the frame that is shown, pixels
+  uvec2 drawn;           // of `radiance`, whose nearest pixels are shown
+  float uniform_weight;  // of `mean` in all pixels; below 0: that of `mean_weight`
 };
 
 vec3 tone_map(vec3 color) {
@@ -31,9 +32,9 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(uvec2(pixel), shown_size))) return;
   ivec2 nearest = ivec2((2u * uvec2(pixel) + 1u) * drawn / (2u * shown_size));
-  float mean_share = imageLoad(mean_weight, pixel).r;
-  vec3 color = mean_share < 1.0 ? imageLoad(radiance, nearest).rgb : vec3(0.0);
-  if (mean_share > 0.0) color = mix(color, imageLoad(mean, pixel).rgb, mean_share);
+  float weight = uniform_weight < 0.0 ? imageLoad(mean_weight, pixel).r : uniform_weight;
+  vec3 color = weight < 1.0 ? imageLoad(radiance, nearest).rgb : vec3(0.0);
+  if (weight > 0.0) color = mix(color, imageLoad(mean, pixel).rgb, weight);
   color = max(color, 0.0) * exposure.factor;
   vec3 encoded = srgb_encode(tone_map(color));
   // The same noise in every frame, so that a converged frame does not change.

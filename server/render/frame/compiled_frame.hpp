@@ -40,7 +40,9 @@ struct CompiledFrame {
   FrameOutputs outputs;
   std::optional<EncodedOutput> encoded;  // absent where the device does not encode
   bool has_frame = false;                // the output is that of a finished frame
-  std::vector<BufferInfo> buffers;       // that a view or a capture may name, the output first
+  /// uniform_mean_weight() of the frame that began last, which did not write outputs.mean_weight.
+  std::optional<float> uniform_weight;
+  std::vector<BufferInfo> buffers;  // that a view or a capture may name, the output first
 
  private:
   void share_sets(const Engine::Parts& parts, const FrameConstantsSlots& constants_buffers);

@@ -6,6 +6,7 @@
 #include "render/api/octahedral.hpp"
 #include "render/frame/buffer_list.hpp"
 #include "render/passes/gbuffer/gbuffer.hpp"
+#include "render/passes/post/mean_weight.hpp"
 #include "render/passes/post/present.hpp"
 #include "render/views/debug_view.hpp"
 
@@ -50,11 +51,12 @@ glm::vec3 on_surface(const ViewRay& ray, glm::vec3 sample, glm::vec3 normal) {
   return ray.at(plausible ? depth : -sample.z);
 }
 
-/// Blends the mean into the frame's own radiance by its weight in x of `weights`, as present()
-/// does; alpha is 1.
-void mix(FloatImage& own, const FloatImage& mean, const FloatImage& weights) {
+/// Blends the mean into the frame's own radiance by its weight in x of `weights`, where not all
+/// pixels have the same, as present() does; alpha is 1.
+void mix(FloatImage& own, const FloatImage& mean, const FloatImage& weights,
+         std::optional<float> uniform_weight) {
   for (std::size_t i = 0; i < own.rgba.size(); ++i) {
-    const float weight = weights.rgba[i / 4 * 4];
+    const float weight = uniform_weight ? *uniform_weight : weights.rgba[i / 4 * 4];
     float value = weight < 1.0f ? own.rgba[i] : 0.0f;
     if (weight > 0.0f) value += (mean.rgba[i] - value) * weight;
     own.rgba[i] = i % 4 == 3 ? 1.0f : std::max(value, 0.0f);
@@ -62,6 +64,13 @@ void mix(FloatImage& own, const FloatImage& mean, const FloatImage& weights) {
 }
 
 }  // namespace
+
+void fill_in_weight(const CompiledFrame& compiled, std::string_view buffer, FloatImage& values) {
+  if (!compiled.uniform_weight || buffer != mean_weight_buffers.weight.name) return;
+  for (std::size_t i = 0; i < values.rgba.size(); i += 4) {
+    values.rgba[i] = *compiled.uniform_weight;
+  }
+}
 
 FloatImage shown_radiance(const CompiledFrame& compiled) {
   const auto read = [&](gpu::ImageRef ref) {
@@ -72,7 +81,7 @@ FloatImage shown_radiance(const CompiledFrame& compiled) {
   FloatImage mean = read(compiled.outputs.mean);
   // Frames that are reconstructed from smaller ones show none of the mean, which is as small.
   if (mean.rgba.size() != radiance.rgba.size()) mean = radiance;
-  mix(radiance, mean, read(compiled.outputs.mean_weight));
+  mix(radiance, mean, read(compiled.outputs.mean_weight), compiled.uniform_weight);
   return radiance;
 }
 
@@ -87,7 +96,8 @@ std::vector<BufferValue> inspect_buffers(const CompiledFrame& compiled, const Vi
         return read_texel(image, pixel.x, pixel.y);
       };
       FloatImage value = read(compiled.outputs.radiance);
-      mix(value, read(compiled.outputs.mean), read(compiled.outputs.mean_weight));
+      mix(value, read(compiled.outputs.mean), read(compiled.outputs.mean_weight),
+          compiled.uniform_weight);
       values.push_back({buffer.name, std::move(value.rgba), {}});
       continue;
     }
@@ -96,6 +106,7 @@ std::vector<BufferValue> inspect_buffers(const CompiledFrame& compiled, const Vi
     if (!image) continue;
     const glm::uvec2 pixel = pixel_at(point, image->drawn);
     FloatImage value = read_texel(image->whole, pixel.x, pixel.y);
+    fill_in_weight(compiled, view.buffer->name, value);
     value = extract(view, value, context, pixel);
     value.rgba.resize(value.channels);
     values.push_back({buffer.name, std::move(value.rgba), std::string(view.unit())});

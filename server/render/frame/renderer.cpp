@@ -10,6 +10,7 @@
 #include "render/frame/buffer_list.hpp"
 #include "render/frame/probe.hpp"
 #include "render/frame/renderer_state.hpp"
+#include "render/passes/post/mean_weight.hpp"
 #include "render/passes/shading/draw_shading.hpp"
 #include "render/views/debug_view.hpp"
 #include "render/views/text_overlay.hpp"
@@ -221,6 +222,7 @@ bool Renderer::begin(const std::function<bool()>& canceled) {
   const bool had_previous = state.has_previous;
   const std::uint32_t age = std::exchange(state.clock.age, had_previous ? state.clock.age + 1 : 0);
   state.make_constants(before);
+  compiled.uniform_weight = uniform_mean_weight(compiled.inputs);
   if (compiled.plan.begin(canceled)) {
     state.begun.push_back(begun);
     state.count_sample();

@@ -119,7 +119,9 @@ std::optional<FloatImage> Renderer::State::read(std::string_view name) {
   const View view = find_view(name);
   const auto image = view ? compiled->find(view.buffer->name) : std::nullopt;
   if (!image) return std::nullopt;
-  return extract(view, read_image(image->whole, image->drawn),
+  FloatImage values = read_image(image->whole, image->drawn);
+  fill_in_weight(*compiled, view.buffer->name, values);
+  return extract(view, values,
                  {constants, exposure_factor(compiled->plan, compiled->outputs.exposure)});
 }
 

@@ -72,12 +72,14 @@ void hold_mean(const HoldMeanJob& job) {
     for (int y = first; y < last; ++y) {
       const auto row = static_cast<std::uint32_t>(y);
       const auto* mean = job.mean.row<const std::uint32_t>(row);
-      const float* const weight = job.mean_weight.row<const float>(row);
+      const float* const weights = job.mean_weight.row<const float>(row);
+      const float uniform = job.constants.weight;
       float* color = job.resolved.row<float>(row);
       for (std::uint32_t x = 0; x < job.constants.shown.x; ++x, mean += 2, color += 4) {
         const glm::vec2 first_two = glm::unpackHalf2x16(mean[0]);
         const glm::vec3 kept(first_two, glm::unpackHalf2x16(mean[1]).x);
-        for (int c = 0; c < 3; ++c) color[c] += (kept[c] - color[c]) * weight[x];
+        const float weight = uniform < 0.0f ? weights[x] : uniform;
+        for (int c = 0; c < 3; ++c) color[c] += (kept[c] - color[c]) * weight;
       }
     }
   });

@@ -32,11 +32,12 @@ void accumulate(const AccumulateJob& job);
 template <class Stage>
 struct HoldMeanBindings {
   gpu::Read<Stage> mean;           // rgba16f
-  gpu::Read<Stage> mean_weight;    // r32f
+  gpu::Read<Stage> mean_weight;    // r32f; not read where all pixels have one
   gpu::ReadWrite<Stage> resolved;  // rgba32f
 };
 struct HoldMeanConstants {
   glm::uvec2 shown;  // size of all images, pixels
+  float weight;      // of `mean` in all pixels; below 0: that of `mean_weight`
 };
 using HoldMeanJob = gpu::HostPass<HoldMeanBindings, HoldMeanConstants>;
 void hold_mean(const HoldMeanJob& job);

@@ -88,6 +88,16 @@ TEST_P(SignalKernels, HoldMeanMatchesShader) {
   const float expected = glm::mix(frame[0].x, glm::unpackHalf2x16(mean[0].x).x, weight[0]);
   EXPECT_NEAR(texel(rig.read(host), 0, 0).x, expected, 1e-6f);
   EXPECT_EQ(texel(rig.read(host), 0, 0).w, 7.0f);
+
+  // The same weight in all pixels takes the place of the image's.
+  settings.accumulation.by_noise = false;
+  settings.accumulation.blend_samples = 2;
+  rig.set_settings(settings);
+  for (const gpu::ImageRef image : {shader, host}) rig.fill(image, frame);
+  rig.run();
+  EXPECT_LT(compare(rig.read(shader), rig.read(host)).max, 1e-6);
+  const float half = glm::mix(frame[0].x, glm::unpackHalf2x16(mean[0].x).x, 0.5f);
+  EXPECT_NEAR(texel(rig.read(host), 0, 0).x, half, 1e-6f);
 }
 
 INSTANTIATE_TEST_SUITE_P(Sizes, SignalKernels,

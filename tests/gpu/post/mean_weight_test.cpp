@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -49,10 +50,17 @@ class MeanWeightTest : public testing::Test {
     return rig_.read(weight_);
   }
   float weight(float frame, float mean, float variance, std::uint32_t samples) {
+    EXPECT_FALSE(uniform_weight(samples));
     const auto all =
         weights(Texels(pixels, grey(frame)), Texels(pixels, grey(mean, variance)), samples);
     EXPECT_EQ(texel(all, 0, 0).x, texel(all, 12, 9).x) << "at the border as inside";
     return texel(all, 12, 9).x;
+  }
+
+  /// Of all pixels, with `samples` samples in the mean.
+  std::optional<float> uniform_weight(std::uint32_t samples) {
+    rig_.set_accumulated(samples - 1);
+    return render::uniform_mean_weight(rig_.inputs());
   }
 
   FrameRig rig_{SceneBuilder().build(), look({0, 0, 3}, {0, 0, 0}), {.extent = extent}};
@@ -75,7 +83,25 @@ TEST_F(MeanWeightTest, DifferencesWithinNoiseShowTheFrame) {
 }
 
 TEST_F(MeanWeightTest, OneSampleTellsNoVariance) {
-  EXPECT_EQ(weight(2.0f, 9.0f, 0.0f, 1), 0.0f);
+  EXPECT_EQ(uniform_weight(1), 0.0f);
+  EXPECT_FALSE(uniform_weight(2));
+}
+
+TEST_F(MeanWeightTest, IsNotWrittenWhereAllPixelsHaveTheSame) {
+  const auto runs = [&](std::uint32_t samples) {
+    rig_.set_accumulated(samples - 1);
+    rig_.run();
+    const auto& passes = rig_.plan().timings();
+    const auto pass = std::ranges::find(passes, "mean_weight", &gpu::PassTiming::name);
+    EXPECT_NE(pass, passes.end());
+    return pass->milliseconds >= 0.0f;
+  };
+  EXPECT_FALSE(runs(1));
+  EXPECT_TRUE(runs(2));
+  protocol::Settings settings = unfiltered();
+  settings.accumulation.by_noise = false;
+  rig_.set_settings(settings);
+  EXPECT_FALSE(runs(2));
 }
 
 TEST_F(MeanWeightTest, ConvergesToTheMeanWhereTheFrameIsWrong) {
@@ -120,13 +146,13 @@ TEST_F(MeanWeightTest, FollowsTheNumberOfSamplesWithoutNoise) {
   settings.accumulation.by_noise = false;
   settings.accumulation.blend_samples = 8;
   rig_.set_settings(settings);
-  EXPECT_FLOAT_EQ(weight(1.0f, 1.0f, 0.0f, 9), 0.5f);
-  EXPECT_FLOAT_EQ(weight(1.0f, 1.0f, 0.0f, 25), 0.75f);
-  EXPECT_EQ(weight(1.0f, 1.0f, 0.0f, 1), 0.0f);
+  EXPECT_FLOAT_EQ(uniform_weight(9).value(), 0.5f);
+  EXPECT_FLOAT_EQ(uniform_weight(25).value(), 0.75f);
+  EXPECT_EQ(uniform_weight(1), 0.0f);
   settings.accumulation.by_noise = true;
   settings.accumulation.blend_samples = 0;
   rig_.set_settings(settings);
-  EXPECT_EQ(weight(1.0f, 1.0f, 0.0f, 1), 1.0f) << "the mean alone";
+  EXPECT_EQ(uniform_weight(1), 1.0f) << "the mean alone";
 }
 
 }  // namespace

@@ -41,6 +41,13 @@ class KernelComparison {
   }
 
   FrameRig& rig() { return rig_; }
+  /// All pixels show as much of the mean, as the number of samples says.
+  void weigh_alike() {
+    protocol::Settings settings = rig_.inputs().settings;
+    settings.accumulation.by_noise = false;
+    settings.accumulation.blend_samples = 8;
+    rig_.set_settings(settings);
+  }
   ErrorStatistics statistics() { return compare(rig_.read(shader_), rig_.read(host_)); }
 
  private:
@@ -68,6 +75,23 @@ TEST_F(PresentKernel, MatchesShader) {
           << "more than one code value: " << static_cast<int>(curve);
       EXPECT_LT(result.mean, 0.02 / 255.0) << "in too many pixels";
       EXPECT_GT(result.magnitude, 0.2);
+    }
+  }
+}
+
+TEST_F(PresentKernel, MatchesShaderWhereAllPixelsWeighTheMeanAlike) {
+  KernelComparison comparison({177, 95}, protocol::ToneMapCurve::neutral);
+  comparison.weigh_alike();
+  double without = 0.0;
+  for (const std::uint32_t samples : {0u, 8u, 100000u}) {
+    comparison.rig().set_accumulated(samples);
+    comparison.rig().run();
+    const ErrorStatistics result = comparison.statistics();
+    EXPECT_LT(result.max, 1.01 / 255.0) << samples;
+    EXPECT_LT(result.mean, 0.02 / 255.0) << samples;
+    if (samples == 0) without = result.magnitude;
+    if (samples > 0) {
+      EXPECT_GT(result.magnitude, without + 0.03) << "the mean is brighter: " << samples;
     }
   }
 }

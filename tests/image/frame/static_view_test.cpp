@@ -146,5 +146,35 @@ TEST(StaticView, MovingFramesShowNoneOfTheMean) {
   for (std::size_t i = 0; i < weights.rgba.size(); i += 4) ASSERT_EQ(weights.rgba[i], 0.0f);
 }
 
+TEST(StaticView, CapturesShowTheWeightThatAllPixelsHave) {
+  RendererRig rig = make_view();
+  protocol::Settings settings;
+  settings.accumulation.by_noise = false;
+  settings.accumulation.blend_samples = 8;
+  rig.apply(settings);
+  const auto expect_weight = [&](float expected) {
+    const render::FloatImage weights = rig.capture("mean_weight");
+    for (std::size_t i = 0; i < weights.rgba.size(); i += 4) ASSERT_EQ(weights.rgba[i], expected);
+    for (const render::BufferValue& value : rig.renderer.inspect({0.5f, 0.5f})) {
+      if (value.name != "mean_weight") continue;
+      EXPECT_EQ(value.channels, std::vector{expected});
+    }
+  };
+  rig.accumulate(9);
+  expect_weight(0.5f);
+  const render::FloatImage half = rig.capture("output.radiance");
+  // Of the frame that was finished, whatever comes next.
+  rig.renderer.set_camera(look({0.6f, 2, 4.5f}, {0, 0.5f, 0}));
+  expect_weight(0.5f);
+  EXPECT_EQ(rig.capture("output.radiance").rgba, half.rgba);
+  rig.renderer.render();
+  expect_weight(0.0f);
+  EXPECT_NE(rig.capture("output.radiance").rgba, half.rgba);
+  settings.accumulation.blend_samples = 0;  // the mean alone
+  rig.apply(settings);
+  rig.renderer.render();
+  expect_weight(1.0f);
+}
+
 }  // namespace
 }  // namespace heliograph::test

@@ -125,15 +125,7 @@ namespace heliograph::render::kernels {
 HWY_EXPORT(weigh_rows);
 
 void mean_weight(const MeanWeightJob& job) {
-  const auto& [shown, share, by_noise] = job.constants;
-  const auto width = static_cast<int>(shown.x), height = static_cast<int>(shown.y);
-  if (by_noise == 0) {
-    for (int y = 0; y < height; ++y) {
-      std::fill_n(job.weight.row<float>(static_cast<std::uint32_t>(y)), width, share);
-    }
-    return;
-  }
-  for_each_band(height, [&](int first, int last) {
+  for_each_band(static_cast<int>(job.constants.shown.y), [&](int first, int last) {
     HWY_DYNAMIC_DISPATCH(weigh_rows)(job, first, last);
   });
 }

@@ -14,14 +14,12 @@ struct MeanWeightBindings {
   gpu::Write<Stage> weight;  // r32f
 };
 struct MeanWeightConstants {
-  glm::uvec2 shown;        // size of all images, pixels
-  float share;             // the weight of every pixel, where it does not follow from noise
-  std::uint32_t by_noise;  // 0: `share` is the weight
+  glm::uvec2 shown;  // size of all images, pixels
 };
 using MeanWeightJob = gpu::HostPass<MeanWeightBindings, MeanWeightConstants>;
 
-/// The weight of the mean in the frame that is shown, on all processors, in the widest vectors that
-/// they have.
+/// The weight of the mean in the frame that is shown, by its noise, on all processors, in the
+/// widest vectors that they have.
 void mean_weight(const MeanWeightJob& job);
 
 }  // namespace heliograph::render::kernels

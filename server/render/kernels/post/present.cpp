@@ -62,7 +62,11 @@ class Presentation {
   }
 
   HWY_INLINE Triple<V> radiance(int x, int y) const {
-    const V weight = hn::LoadU(d_, row_of<const float>(job_.mean_weight, y) + x);
+    const float uniform = job_.constants.weight;
+    if (uniform >= 1.0f) return mean_at(x, y);
+    if (uniform == 0.0f) return nearest(x, y);
+    const V weight =
+        uniform > 0.0f ? set(uniform) : hn::LoadU(d_, row_of<const float>(job_.mean_weight, y) + x);
     const auto none = hn::Le(weight, hn::Zero(d_)), all = hn::Ge(weight, set(1.0f));
     if (hn::AllTrue(d_, all)) return mean_at(x, y);
     const Triple<V> frame = nearest(x, y);

@@ -10,13 +10,14 @@ template <class Stage>
 struct PresentBindings {
   gpu::Read<Stage> radiance;     // rgba32f
   gpu::Read<Stage> mean;         // rgba16f, as filter_mean() leaves it
-  gpu::Read<Stage> mean_weight;  // r32f: of `mean`, 0..1
+  gpu::Read<Stage> mean_weight;  // r32f: of `mean`, 0..1; not read where all pixels have one
   gpu::ReadBuffer<Stage, shared::ExposureState> exposure;
   gpu::Write<Stage> output;  // rgba8
 };
 struct PresentConstants {
   glm::uvec2 shown;  // size of the frame that is shown, pixels
   glm::uvec2 drawn;  // that of `radiance`, whose nearest pixels are shown
+  float weight;      // of `mean` in all pixels; below 0: that of `mean_weight`
 };
 using PresentJob = FrameJob<PresentBindings, PresentConstants>;
 

@@ -14,7 +14,9 @@ void hold_mean(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef resolv
   plan.pass("hold_mean", in.program(shaders::hold_mean))
       .bind<kernels::HoldMeanBindings>(
           {.mean = mean, .mean_weight = mean_weight, .resolved = resolved})
-      .constants([in] { return kernels::HoldMeanConstants{size_of(in.shown)}; })
+      .constants([in] {
+        return kernels::HoldMeanConstants{size_of(in.shown), uniform_weight_constant(in)};
+      })
       .when([in] {
         const auto most = static_cast<std::uint32_t>(in.settings.accumulation.max_samples);
         return !traces_reference(in) && in.clock.samples + 1 >= most && weighs_mean(in);

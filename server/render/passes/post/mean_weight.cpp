@@ -34,8 +34,19 @@ bool weighs_by_noise(const FrameInputs& in) {
   return !in.is_reduced() && !shows_mean_alone(in.settings) && in.settings.accumulation.by_noise;
 }
 
+std::optional<float> uniform_mean_weight(const FrameInputs& in) {
+  if (!weighs_by_noise(in)) return mean_share(in);
+  // One sample tells nothing of its noise.
+  if (samples_of_mean(in) < 2) return 0.0f;
+  return std::nullopt;
+}
+
+float uniform_weight_constant(const FrameInputs& in) {
+  return uniform_mean_weight(in).value_or(-1.0f);
+}
+
 bool weighs_mean(const FrameInputs& in) {
-  return weighs_by_noise(in) ? samples_of_mean(in) >= 2 : mean_share(in) > 0.0f;
+  return uniform_mean_weight(in) != 0.0f;
 }
 
 gpu::ImageRef weigh_mean(gpu::FramePlan& plan, const FrameInputs& in, const Exposure& exposure,
@@ -45,15 +56,11 @@ gpu::ImageRef weigh_mean(gpu::FramePlan& plan, const FrameInputs& in, const Expo
   plan.pass("mean_weight", in.program(shaders::mean_weight))
       .bind<kernels::MeanWeightBindings>(
           {.radiance = radiance, .mean = mean, .exposure = exposure.state, .weight = weight})
-      .constants([in] {
-        const bool by_noise = weighs_by_noise(in);
-        // One sample tells nothing of its noise.
-        const bool compared = by_noise && samples_of_mean(in) >= 2;
-        return kernels::MeanWeightConstants{size_of(in.shown), by_noise ? 0.0f : mean_share(in),
-                                            compared};
-      })
+      .constants([in] { return kernels::MeanWeightConstants{size_of(in.shown)}; })
+      .when([in] { return !uniform_mean_weight(in); })
       .dispatch(in.shown)
       .host(kernels::mean_weight);
+  plan.leave_undefined_when_skipped(weight);
   return weight;
 }
 

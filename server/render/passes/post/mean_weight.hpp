@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "render/passes/post/exposure.hpp"
 #include "render/views/buffer_description.hpp"
 
@@ -15,12 +17,19 @@ inline constexpr struct MeanWeightBuffers {
 /// after the first weigh as much. 0 in frames that are drawn smaller than they are shown.
 float mean_share(const FrameInputs& in);
 
+/// The weight of the mean in this frame, where all pixels have the same; absent where it depends on
+/// noise, pixel by pixel.
+std::optional<float> uniform_mean_weight(const FrameInputs& in);
+/// That as a constant of passes that read the weight: below 0 where the image has it.
+float uniform_weight_constant(const FrameInputs& in);
+
 /// Whether the mean has any weight in some pixel of this frame.
 bool weighs_mean(const FrameInputs& in);
-/// Whether it depends on noise, pixel by pixel.
+/// Whether it depends on noise as soon as that is known, pixel by pixel.
 bool weighs_by_noise(const FrameInputs& in);
 
 /// The weight of `mean`, which filter_mean() made, in every pixel: r32f, of the size that is shown.
+/// It has no defined content in frames with a uniform_mean_weight().
 /// With `accumulation.by_noise` the mean
 /// is shown where it differs from the denoised frame, `radiance`, by more than its noise explains:
 /// the weight of least squared error, for independent errors (as of James and Stein 1961, in

@@ -2,6 +2,7 @@
 
 #include "render/kernels/post/present.hpp"
 #include "render/passes/frame_inputs.hpp"
+#include "render/passes/post/mean_weight.hpp"
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
@@ -17,7 +18,8 @@ gpu::ImageRef present(gpu::FramePlan& plan, const FrameInputs& in, const Exposur
                                        .exposure = exposure.state,
                                        .output = output})
       .constants([in, &plan, radiance] {
-        return kernels::PresentConstants{size_of(in.shown), size_of(plan.drawn(radiance))};
+        return kernels::PresentConstants{size_of(in.shown), size_of(plan.drawn(radiance)),
+                                         uniform_weight_constant(in)};
       })
       .dispatch(in.shown)
       .host(kernels::present, in.constants);
