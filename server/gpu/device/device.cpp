@@ -198,9 +198,10 @@ void Device::check_presence() const {
   check(loss_is_wanted() ? VK_ERROR_DEVICE_LOST : VK_SUCCESS, "reach the device");
 }
 
-Submission Device::submit(VkCommandBuffer commands, std::uint32_t queue) const {
+Submission Device::submit(VkCommandBuffer commands, std::uint32_t queue,
+                          const std::optional<Submission>& after) const {
   check_presence();
-  return queues_->submit(commands, queue);
+  return queues_->submit(commands, queue, after);
 }
 
 void Device::wait(const Submission& submission) const {

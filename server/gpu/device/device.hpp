@@ -54,8 +54,10 @@ class Device {
   /// For frames that may submit nothing: finds a device that tests have lost. Thread safe.
   /// @throws DeviceLost
   void check_presence() const;
-  /// Submits and returns at once. Thread safe. @returns what wait() waits for
-  Submission submit(VkCommandBuffer commands, std::uint32_t queue = Queues::general) const;
+  /// Submits and returns at once. The device begins when it is done with `after`. Thread safe.
+  /// @returns what wait() waits for
+  Submission submit(VkCommandBuffer commands, std::uint32_t queue = Queues::general,
+                    const std::optional<Submission>& after = {}) const;
   /// Until it is done. Thread safe.
   void wait(const Submission& submission) const;
   /// Records into a fresh command buffer, submits it and waits: for set-up work. Thread safe.

@@ -118,7 +118,8 @@ std::uint32_t Queues::idlest_compute() const {
   return idlest;
 }
 
-Submission Queues::submit(VkCommandBuffer commands, std::uint32_t number) const {
+Submission Queues::submit(VkCommandBuffer commands, std::uint32_t number,
+                          const std::optional<Submission>& after) const {
   Queue& queue = *queues_.at(number);
   VkCommandBufferSubmitInfo buffer{VK_STRUCTURE_TYPE_COMMAND_BUFFER_SUBMIT_INFO};
   buffer.commandBuffer = commands;
@@ -130,6 +131,14 @@ Submission Queues::submit(VkCommandBuffer commands, std::uint32_t number) const 
   info.pCommandBufferInfos = &buffer;
   info.signalSemaphoreInfoCount = 1;
   info.pSignalSemaphoreInfos = &done;
+  VkSemaphoreSubmitInfo before{VK_STRUCTURE_TYPE_SEMAPHORE_SUBMIT_INFO};
+  if (after) {
+    before.semaphore = queues_.at(after->queue)->timeline;
+    before.value = after->number;
+    before.stageMask = VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT;
+    info.waitSemaphoreInfoCount = 1;
+    info.pWaitSemaphoreInfos = &before;
+  }
   const std::lock_guard lock(queue.mutex);
   done.value = queue.submitted + 1;
   check(vkQueueSubmit2(queue.handle, 1, &info, VK_NULL_HANDLE), "give commands to the device");

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -45,8 +46,11 @@ class Queues {
   /// alone. Thread safe.
   std::uint32_t idlest_compute() const;
 
-  /// Returns at once. Thread safe. @throws GpuError, DeviceLost
-  Submission submit(VkCommandBuffer commands, std::uint32_t queue) const;
+  /// Returns at once. The device begins when it is done with `after`, if that is given. Thread
+  /// safe.
+  /// @throws GpuError, DeviceLost
+  Submission submit(VkCommandBuffer commands, std::uint32_t queue,
+                    const std::optional<Submission>& after) const;
   /// Until this work, and all that its queue was given before, is done, or the time is over. Thread
   /// safe. @returns whether it is done
   bool wait_for(const Submission& submission, std::chrono::nanoseconds time) const;

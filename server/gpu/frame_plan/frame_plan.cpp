@@ -240,7 +240,7 @@ void FramePlan::make_command_buffers() {
   pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
   check(vkCreateCommandPool(device_.handle(), &pool, nullptr, &command_pool_),
         "create a command pool");
-  std::uint32_t submits = 2;
+  std::uint32_t submits = 3;
   for (const Pass& pass : passes_) {
     submits += timed_by_clock() || pass.is_host_only() ? 1 : 0;
   }

@@ -102,6 +102,9 @@ class PassBuilder {
   PassBuilder& draw(std::function<void(VkCommandBuffer, VkPipelineLayout)> record);
   /// The pass is skipped in frames where this is false.
   PassBuilder& when(std::function<bool()> condition);
+  /// A frame that begins while the device works on the one before may run the pass during the end
+  /// of that one, on another queue. It reads nothing that passes write, and writes no history.
+  PassBuilder& early();
 
   /// The same computation as the shader's by the host's processors, which a plan with host kernels
   /// runs in its place. `kernel` is a function or a lambda that takes a `const HostPass<...>&` of
@@ -361,6 +364,7 @@ class FramePlan {
   void run_host_kernel(const Pass& pass) const;
   void check_pass(const Pass& pass) const;
   void order_passes();
+  void divide(std::span<const PassUses> passes);
   void make_descriptor_sets();
   void make_command_buffers();
   /// For a frame when none is in flight: always of one family.
@@ -380,6 +384,7 @@ class FramePlan {
   VkCommandBuffer recorder();
   /// Gives the device what was recorded since the last submit, if anything.
   void submit();
+  void submit_parts(std::size_t place);
   /// For all that was submitted.
   void wait();
   void flush();  // both
@@ -395,6 +400,7 @@ class FramePlan {
   std::vector<Resource> resources_;
   std::vector<Pass> passes_;  // as declared
   PassOrder order_;           // in which they run
+  FrameParts parts_;
   struct SharedSet {
     std::uint32_t number;
     std::uint32_t side;
@@ -415,9 +421,12 @@ class FramePlan {
   std::size_t submits_ = 0;                // of this frame so far
   bool recording_ = false;                 // into the next
   std::optional<Submission> submitted_;    // what was last submitted and not waited for
+  std::optional<Submission> wait_first_;   // of the frame before, by the next submit
+  std::optional<Submission> closed_;       // of this frame, as Begun has it
   /// A frame that has begun.
   struct Begun {
     std::optional<Submission> submitted;  // its last work for the device
+    std::optional<Submission> closed;     // the last that uses what its early passes write
     std::uint32_t slot = 0;
     bool came_back = false;
     bool timed = false;

@@ -127,10 +127,27 @@ void FramePlan::order_passes() {
   for (const Pass& pass : passes_) {
     std::vector<Use> uses = pass.all_uses();
     std::ranges::transform(uses, uses.begin(), physical);
-    all.push_back({std::move(uses), pass.program == nullptr});
+    all.push_back({std::move(uses), pass.program == nullptr, pass.early});
   }
   // Where every pass is a submit of its own, there is nothing to overlap.
   order_ = timed_by_clock() ? declared_order(all) : overlapping_order(all);
+  divide(all);
+}
+
+void FramePlan::divide(std::span<const PassUses> passes) {
+  parts_ = {};
+  if (timed_by_clock()) return;
+  parts_ = divide_frame(order_, passes);
+  std::optional<std::uint32_t> refused = read_too_early(order_, passes);
+  for (std::size_t i = 0; i < parts_.early && !refused; ++i) {
+    for (const Use& use : passes[order_.passes[i]].uses) {
+      if (resources_[use.resource].part != Resource::Part::none) refused = use.resource;
+    }
+  }
+  if (refused) {
+    throw GpuError("early passes use \"" + resources_[*refused].name +
+                   "\", which the frame before may use at its end");
+  }
 }
 
 std::vector<std::string> FramePlan::barriers() const {

@@ -48,7 +48,13 @@ bool FramePlan::begin(const std::function<bool()>& canceled) {
   canceled_ = false;
   // Where passes are timed by the clock, nothing is recorded that was not submitted.
   asks_canceled_ = canceled && timed_by_clock() ? &canceled : nullptr;
-  if (begun_.empty()) queue_ = choose_queue();  // two frames run one after the other on one queue
+  // Without early passes, two frames run one after the other on one queue.
+  if (begun_.empty() || parts_.early > 0) queue_ = choose_queue();
+  closed_.reset();
+  if (!begun_.empty() && parts_.early > 0) {
+    const Begun& before = begun_.front();
+    wait_first_ = before.timed ? before.submitted : before.closed;  // passes are timed alone
+  }
   const bool finished = run_passes();
   asks_canceled_ = nullptr;
   if (!finished) return false;
@@ -57,6 +63,7 @@ bool FramePlan::begin(const std::function<bool()>& canceled) {
   if (comes_back && readback.copies()) readback.record(recorder(), get(read_back_));
   submit();
   begun_.push_back({.submitted = std::exchange(submitted_, std::nullopt),
+                    .closed = closed_,
                     .slot = parity_,
                     .came_back = comes_back,
                     .timed = times_passes_});
@@ -120,7 +127,9 @@ bool FramePlan::run_passes() {
   // passes left out, since those behind them rely on it.
   bool barrier = !begun_.empty() || queue_ != Queues::general;
   std::size_t recorded = 0;
-  for (const std::uint32_t i : order_.passes) {
+  for (std::size_t place = 0; place < order_.passes.size(); ++place) {
+    if (parts_.early > 0) submit_parts(place);
+    const std::uint32_t i = order_.passes[place];
     const Pass& pass = passes_[i];
     if (i >= cancelable_) asks_canceled_ = nullptr;
     if (is_canceled()) return false;
@@ -139,7 +148,7 @@ bool FramePlan::run_passes() {
       record(pass, recorder(), i * 2);
       if (!timed_by_clock()) {
         timings_[i].milliseconds = measured_[i];
-        if (++recorded == passes_submitted_first) submit();
+        if (++recorded == passes_submitted_first && parts_.early == 0) submit();
         continue;
       }
     }
@@ -157,6 +166,18 @@ bool FramePlan::run_passes() {
     timings_[i].milliseconds = since(begun);
   }
   return !canceled_;
+}
+
+/// In front of the pass at this place of the order: what was recorded, where the frame is divided.
+void FramePlan::submit_parts(std::size_t place) {
+  if (place == parts_.early) {
+    submit();
+    if (!begun_.empty()) wait_first_ = begun_.front().submitted;
+  }
+  if (place == parts_.closed) {
+    submit();
+    closed_ = submitted_;
+  }
 }
 
 void FramePlan::run_host_kernel(const Pass& pass) const {
@@ -208,7 +229,7 @@ void FramePlan::submit() {
   dependency.pMemoryBarriers = &barrier;
   vkCmdPipelineBarrier2(commands, &dependency);
   check(vkEndCommandBuffer(commands), "end the frame's commands");
-  submitted_ = device_.submit(commands, queue_);
+  submitted_ = device_.submit(commands, queue_, std::exchange(wait_first_, std::nullopt));
 }
 
 void FramePlan::record(const Pass& pass, VkCommandBuffer commands, std::uint32_t query) {

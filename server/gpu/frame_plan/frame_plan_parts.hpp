@@ -51,6 +51,7 @@ struct FramePlan::Pass {
   const Program* program = nullptr;  // null: a host pass
   const RayProgram* rays = nullptr;  // `program`, where it is a ray tracing pipeline
   bool is_raster = false;
+  bool early = false;
   VkExtent3D local_size{1, 1, 1};
   std::vector<Use> bound;      // in binding order
   std::vector<Use> listed;     // the same as given to bind(), with those that are absent

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <set>
 #include <unordered_map>
+#include <utility>
 
 namespace heliograph::gpu {
 namespace {
@@ -51,7 +52,47 @@ PassOrder in_turn(std::size_t passes) {
   return order;
 }
 
+/// How many passes at the start are early.
+std::size_t early_count(const PassOrder& order, std::span<const PassUses> passes) {
+  const auto first_late =
+      std::ranges::find_if(order.passes, [&](std::uint32_t i) { return !passes[i].early; });
+  return static_cast<std::size_t>(first_late - order.passes.begin());
+}
+
+bool uses(const PassUses& pass, std::uint32_t resource) {
+  return std::ranges::any_of(pass.uses, [&](const Use& use) { return use.resource == resource; });
+}
+
 }  // namespace
+
+FrameParts divide_frame(const PassOrder& order, std::span<const PassUses> passes) {
+  FrameParts parts{.early = early_count(order, passes)};
+  parts.closed = parts.early;
+  for (std::size_t i = 0; i < parts.early; ++i) {
+    for (const Use& use : passes[order.passes[i]].uses) {
+      for (std::size_t user = parts.closed; writes(use) && user < order.passes.size(); ++user) {
+        if (uses(passes[order.passes[user]], use.resource)) parts.closed = user + 1;
+      }
+    }
+  }
+  return parts;
+}
+
+std::optional<std::uint32_t> read_too_early(const PassOrder& order,
+                                            std::span<const PassUses> passes) {
+  for (std::size_t i = 0; i < early_count(order, passes); ++i) {
+    for (const Use& read : passes[order.passes[i]].uses) {
+      if (!reads(read)) continue;
+      const bool written = std::ranges::any_of(passes, [&](const PassUses& pass) {
+        return std::ranges::any_of(pass.uses, [&](const Use& use) {
+          return use.resource == read.resource && writes(use);
+        });
+      });
+      if (written) return read.resource;
+    }
+  }
+  return std::nullopt;
+}
 
 PassOrder declared_order(std::span<const PassUses> passes) {
   PassOrder order = in_turn(passes.size());
@@ -83,7 +124,9 @@ PassOrder overlapping_order(std::span<const PassUses> passes) {
   std::ranges::transform(passes, group.begin(),
                          [&](const PassUses& pass) { return groups.group_of(pass); });
   PassOrder order = in_turn(passes.size());
-  std::ranges::stable_sort(order.passes, {}, [&](std::uint32_t pass) { return group[pass]; });
+  std::ranges::stable_sort(order.passes, {}, [&](std::uint32_t pass) {
+    return std::pair(group[pass], !passes[pass].early);
+  });
   for (std::size_t i = 0; i < passes.size(); ++i) {
     const std::uint32_t pass = order.passes[i];
     const bool on_host = passes[pass].on_host || (i > 0 && passes[order.passes[i - 1]].on_host);

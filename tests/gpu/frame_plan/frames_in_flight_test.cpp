@@ -154,6 +154,48 @@ TEST_F(FramePlanTest, TheNextFrameBeginsWhileTheDeviceWorksOnOne) {
   EXPECT_EQ(count(), 10.0f);
 }
 
+TEST_F(FramePlanTest, EarlyPassesRunDuringTheEndOfTheFrameBefore) {
+  if (device_.is_cpu()) GTEST_SKIP() << "processors have finished a frame when it has begun";
+  float number = 0.0f;  // of the frame
+  const auto zero = image("zero"), begun = image("begun"), sum = image("sum");
+  const History total = plan_.history("total", format);
+  add("late", total.previous, sum, 0.0f);
+  plan_.pass("early", program_)
+      .read(zero)
+      .write(begun)
+      .constants([&] { return number; })
+      .early()
+      .dispatch(plan_.extent());
+  add("uses", begun, total.current, 0.0f);
+  add("behind", total.current, image("end"), 0.0f);
+  plan_.read_back(total.current);
+  plan_.compile();
+  const auto shown = [&] {
+    float value = 0.0f;
+    std::memcpy(&value, plan_.read().data(), sizeof value);
+    return value;
+  };
+  plan_.execute();  // with timers
+  number = 1.0f;
+  plan_.begin();
+  for (int frame = 2; frame <= 12; ++frame) {
+    number = static_cast<float>(frame);
+    plan_.begin();
+    plan_.finish();
+    EXPECT_EQ(shown(), static_cast<float>(frame - 1));
+  }
+  plan_.finish();
+  EXPECT_EQ(shown(), 12.0f);
+}
+
+TEST_F(FramePlanTest, EarlyPassesReadNothingThatPassesWrite) {
+  if (device_.is_cpu()) GTEST_SKIP() << "processors have no early passes";
+  const auto a = image("a"), b = image("b");
+  add("early", a, b).early();
+  add("writes", b, a);
+  expect_complaint({"early", "\"a\""});
+}
+
 TEST_F(FramePlanTest, FramesWithTimersAreNotOverlapped) {
   if (device_.is_cpu()) GTEST_SKIP() << "processors have finished a frame when it has begun";
   const auto a = image("a"), b = image("b");

@@ -40,6 +40,33 @@ TEST(PassOrder, OverlapsIndependentChains) {
   EXPECT_EQ(barriers(order), (Numbers{1, 2, 6}));
 }
 
+// The fourth begins the frame; the last that uses what it writes is the fifth.
+TEST(PassOrder, EarlyPassesComeFirstAndEndWithTheirLastUser) {
+  std::vector<PassUses> passes = two_chains();
+  passes[3].early = true;
+  const PassOrder order = overlapping_order(passes);
+  EXPECT_EQ(order.passes, (Numbers{3, 0, 1, 4, 2, 5, 6}));
+  EXPECT_EQ(barriers(order), (Numbers{1, 2, 6}));
+  const FrameParts parts = divide_frame(order, passes);
+  EXPECT_EQ(parts.early, 1u);
+  EXPECT_EQ(parts.closed, 4u);
+  EXPECT_FALSE(read_too_early(order, passes));
+}
+
+TEST(PassOrder, FramesWithoutEarlyPassesAreWhole) {
+  const std::vector<PassUses> passes = two_chains();
+  const FrameParts parts = divide_frame(overlapping_order(passes), passes);
+  EXPECT_EQ(parts.early, 0u);
+  EXPECT_EQ(parts.closed, 0u);
+}
+
+TEST(PassOrder, EarlyPassesReadNothingThatPassesWrite) {
+  std::vector<PassUses> passes = two_chains();
+  passes[0].uses.push_back(reading(20));  // of the frame before
+  passes[0].early = true;
+  EXPECT_EQ(read_too_early(overlapping_order(passes), passes), 20u);
+}
+
 TEST(PassOrder, KeepsTheDeclaredOrderWhereAsked) {
   const PassOrder order = declared_order(two_chains());
   EXPECT_EQ(order.passes, (Numbers{0, 1, 2, 3, 4, 5, 6}));

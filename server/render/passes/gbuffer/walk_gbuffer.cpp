@@ -99,15 +99,20 @@ Walk declare_walk(gpu::FramePlan& plan, const FrameInputs& in,
           .passed = declare_rays(plan, "gbuffer.passed", capacity, tracing::RayKind::camera)};
 }
 
-void find_first(gpu::FramePlan& plan, const FrameInputs& in, const Walk& walk,
-                const tracing::WalkedHierarchy& hierarchy, const GBuffer& gbuffer) {
+void trace_first(gpu::FramePlan& plan, const FrameInputs& in, const Walk& walk,
+                 const tracing::WalkedHierarchy& hierarchy) {
   plan.pass("gbuffer.trace", in.program(shaders::gbuffer_trace))
       .bind<GBufferTraceBindings>({.records = walk.records,
                                    .triangles = walk.triangles,
                                    .alpha_heap = walk.alpha_heap,
                                    .hits = walk.hits})
       .constants(hierarchy.root)
+      .early()
       .dispatch(gpu::each_pixel());
+}
+
+void store_first(gpu::FramePlan& plan, const FrameInputs& in, const Walk& walk,
+                 const GBuffer& gbuffer) {
   const auto& shader = walk.layered ? shaders::gbuffer_first_layered : shaders::gbuffer_first;
   plan.pass("gbuffer.hits", in.program(shader, walk.features))
       .bind<GBufferFirstBindings>({.hits = walk.hits,
@@ -140,9 +145,10 @@ GBuffer walk_gbuffer(gpu::FramePlan& plan, const FrameInputs& in,
                      const tracing::WalkedHierarchy& hierarchy) {
   const GBuffer gbuffer = declare_gbuffer(plan, in.moving.features_without_emission());
   const Walk walk = declare_walk(plan, in, hierarchy);
+  trace_first(plan, in, walk, hierarchy);
   // Camera rays decide for themselves, by the filtered texel: as drawn triangles do.
   begin_rays(plan, in, "gbuffer", walk.passed, Blending::stops);
-  find_first(plan, in, walk, hierarchy, gbuffer);
+  store_first(plan, in, walk, gbuffer);
   find_passed(plan, in, walk, hierarchy, gbuffer);
   return gbuffer;
 }
