@@ -62,8 +62,9 @@ bool FramePlan::begin(const std::function<bool()>& canceled) {
   const bool comes_back = readback && (!read_back_when_ || read_back_when_());
   if (comes_back && readback.copies()) readback.record(recorder(), get(read_back_));
   submit();
-  begun_.push_back({.submitted = std::exchange(submitted_, std::nullopt),
-                    .closed = closed_,
+  const auto last = std::exchange(submitted_, std::nullopt);
+  begun_.push_back({.submitted = last,
+                    .closed = closed_ ? closed_ : last,
                     .slot = parity_,
                     .came_back = comes_back,
                     .timed = times_passes_});
@@ -125,7 +126,7 @@ bool FramePlan::is_canceled() const {
 bool FramePlan::run_passes() {
   // The frame before, or work of another queue, may have written what this one reads. Later: of
   // passes left out, since those behind them rely on it.
-  bool barrier = !begun_.empty() || queue_ != Queues::general;
+  bool barrier = !timed_by_clock();
   std::size_t recorded = 0;
   for (std::size_t place = 0; place < order_.passes.size(); ++place) {
     if (parts_.early > 0) submit_parts(place);

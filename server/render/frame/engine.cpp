@@ -2,6 +2,7 @@
 #include "render/api/devices.hpp"
 #include "render/api/kept_textures.hpp"
 #include "render/frame/engine_parts.hpp"
+#include "render/passes/gbuffer/trace_gbuffer.hpp"
 #include "render/resources/heap_textures.hpp"
 #include "render/resources/scene_resources.hpp"
 #include "render/resources/tables/jpeg_tables.hpp"
@@ -152,7 +153,10 @@ std::uint64_t Engine::validation_messages() const {
 }
 
 std::size_t Engine::frames_at_once() const {
-  return current()->device.queues().compute_count();
+  const auto parts = current();
+  // Queues for compute alone draw no triangles.
+  const bool computes = rays_find_gbuffer_sooner(parts->device.report(), parts->tracer->kind());
+  return computes ? parts->device.queues().compute_count() : 1;
 }
 
 std::uint64_t Engine::submissions() const {

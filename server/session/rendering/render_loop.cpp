@@ -159,7 +159,7 @@ void RenderLoop::advance_or_wait() {
   if (loss_reported_.exchange(false) && device_ready_) on_device_lost("outside of rendering");
   const Views views = open_views();
   if (!device_ready_ && !recover_device(views)) return;
-  if (advance_next(views) || finish_oldest_frame(true) || !device_ready_) return;
+  if (advance_next(views) || finish_a_frame(true) || !device_ready_) return;
   auto due = next_due(views);
   if (held_back_until_) due = due ? std::min(*due, *held_back_until_) : *held_back_until_;
   occupied_ = std::ranges::any_of(views, [](const auto& view) { return view->plays(); });
@@ -223,6 +223,12 @@ bool RenderLoop::draw_in_turn(const std::shared_ptr<SessionView>& view) {
   if (stopping_ || !device_ready_) return false;
   const Clock::time_point start = Clock::now();
   const DeviceTurns::Contender contender{.view = view.get(), .refines = view->refines()};
+  // Beside images that move, those that are refined keep to one part of the device's time: their
+  // frames are drawn alone.
+  if (contender.refines && !in_flight_.empty() && images_move()) {
+    others_wait_ = true;
+    return false;
+  }
   if (const auto until = turns_.hold_back(contender, start)) {
     others_wait_ = true;
     held_back_until_ = held_back_until_ ? std::min(*held_back_until_, *until) : *until;
@@ -231,20 +237,24 @@ bool RenderLoop::draw_in_turn(const std::shared_ptr<SessionView>& view) {
   if (view->next_frame_moves()) moved_at_ = start;
   const SessionView::Work work = advance(*view, true);
   // The device goes on with this frame while that of another view is shown.
-  while (in_flight_.size() >= engine_.frames_at_once()) finish_oldest_frame(false);
+  while (view->in_flight() && in_flight_.size() >= engine_.frames_at_once()) finish_a_frame(false);
   if (view->in_flight() && device_ready_) {
     in_flight_.push_back({view, start, contender.refines});
   } else if (work == SessionView::Work::drawing) {
-    frame_finished(*view, start, contender.refines);
+    frame_finished(*view, std::max(start, device_free_), contender.refines);
   }
   return work != SessionView::Work::none;
 }
 
-/// False: no view has one in flight. `alone`: no other view has a frame to draw.
-bool RenderLoop::finish_oldest_frame(bool alone) {
+/// One that is done, or the oldest. False: no view has one in flight. `alone`: no other view has a
+/// frame to draw.
+bool RenderLoop::finish_a_frame(bool alone) {
   if (in_flight_.empty()) return false;
-  const InFlight finished = std::move(in_flight_.front());
-  in_flight_.pop_front();
+  auto next = std::ranges::find_if(
+      in_flight_, [](const InFlight& frame) { return frame.view->frame_is_done(); });
+  if (next == in_flight_.end()) next = in_flight_.begin();
+  const InFlight finished = *next;
+  in_flight_.erase(next);
   alone = alone && in_flight_.empty();
   SessionView& view = *finished.view;
   Clock::time_point followed{};

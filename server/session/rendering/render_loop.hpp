@@ -83,7 +83,7 @@ class RenderLoop {
   bool advance_next(const Views& views);
   bool draw_in_turn(const std::shared_ptr<SessionView>& view);
   SessionView::Work advance(SessionView& view, bool may_draw);
-  bool finish_oldest_frame(bool alone);
+  bool finish_a_frame(bool alone);
   void frame_finished(SessionView& view, Clock::time_point begun, bool refines);
   /// Runs `work` of a view, whose failure is not that of others. @returns whether it succeeded
   bool attempt(SessionView& view, const std::function<void()>& work);

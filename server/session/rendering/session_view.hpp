@@ -66,6 +66,8 @@ class SessionView {
   Work advance(bool may_draw);
   /// Whether the device still works on a frame.
   bool in_flight() const { return !begun_.empty(); }
+  /// Whether finish_frame() would not wait; also where it would fail, since the device is lost.
+  bool frame_is_done() const;
   /// Whether its next frame may begin before the device is done with the one that it works on.
   bool can_begin_following();
   /// Begins it shortly before that, where nothing but the camera has changed: the device goes on

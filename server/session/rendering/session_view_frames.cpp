@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "render/api/device_lost.hpp"
 #include "session/rendering/session_view.hpp"
 
 namespace heliograph::session {
@@ -110,6 +111,14 @@ std::optional<render::JpegRequest> SessionView::wanted_jpeg(ViewState state) {
 Clock::time_point SessionView::began_on_device(const BegunFrame& begun,
                                                Clock::time_point device_free) const {
   return std::max(begun.start, begun.follows ? frame_ended_at_ : device_free);
+}
+
+bool SessionView::frame_is_done() const {
+  try {
+    return renderer_->wait_for(std::chrono::nanoseconds(0));
+  } catch (const render::DeviceLost&) {
+    return true;
+  }
 }
 
 void SessionView::finish_frame(Clock::time_point device_free) {
