@@ -367,7 +367,7 @@ class FramePlan {
   void divide(std::span<const PassUses> passes);
   void make_descriptor_sets();
   void make_command_buffers();
-  /// For a frame when none is in flight: always of one family.
+  /// For the frame that begins: always of one family.
   std::uint32_t choose_queue() const;
   void list_views();
   void record(const Pass& pass, VkCommandBuffer commands, std::uint32_t query);
