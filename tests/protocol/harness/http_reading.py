@@ -131,29 +131,38 @@ class Response:
     body: bytes
 
 
-def responses_of(data, methods):
-    """Final responses to requests of these methods, in turn; those to further ones as to GET."""
+def _responses(data, methods):
+    """Those that are whole, and where what follows them begins."""
     data, at, found = bytes(data), 0, []
-    while at < len(data):
-        end = data.index(HEAD_END, at)
+    while (end := data.find(HEAD_END, at)) >= 0:
         first, *rest = data[at:end].split(b"\r\n")
-        status, fields, at = int(first.split()[1]), _fields(rest), end + len(HEAD_END)
+        status, fields, body = int(first.split()[1]), _fields(rest), end + len(HEAD_END)
         if status < 200 and status != 101:
+            at = body
             continue
         method = methods[len(found)] if len(found) < len(methods) else "GET"
         bodiless = method == "HEAD" or status in (101, 204, 304)
         size = 0 if bodiless else int(fields["content-length"][0])
-        found.append(Response(status, data[at:at + size]))
-        at += size
-        if status == 101:
+        if len(data) < body + size:
             break
-    return found
+        found.append(Response(status, data[body:body + size]))
+        at = body + size
+        if status == 101:
+            return found, len(data)
+    return found, at
+
+
+def responses_of(data, methods):
+    """Final responses to requests of these methods that are whole, in turn; those to further ones as to GET."""
+    return _responses(data, methods)[0]
 
 
 def disagreement(sent, answered):
     """Why these bytes of a connection are not one response for each request, or nothing."""
     requests = requests_of(sent)
-    responses = responses_of(answered, [request.method for request in requests])
+    responses, end = _responses(answered, [request.method for request in requests])
+    if end < len(answered):
+        return f"no whole response: {bytes(answered[end:])[-400:]!r}"
     if len(responses) != len(requests):
         return f"{len(requests)} requests, {len(responses)} responses to {bytes(sent)!r}: {bytes(answered)[-400:]!r}"
     if requests and requests[-1].refused and responses[-1].status < 400:
