@@ -93,6 +93,10 @@ class Renderer {
   /// Makes them, on any thread, beside other renderers, while nothing else of this one is called.
   void prepare();
 
+  /// False until a frame has begun with the programs and images that the next one is made with: the
+  /// first one takes longer.
+  bool has_begun() const;
+
   /// The next frames come as such a JPEG where the engine encodes and the output is shown, and with
   /// pixels only where those cost nothing; absent: they come as pixels. So do frames of more than
   /// 16.8 million pixels that would be made smaller, and those whose JPEG is too long.

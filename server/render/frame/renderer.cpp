@@ -180,6 +180,10 @@ void Renderer::prepare() {
   state_->frame_plan();
 }
 
+bool Renderer::has_begun() const {
+  return state_->compiled && !state_->new_plan;
+}
+
 bool Renderer::needs_frame() const {
   if (state_->keeps_buffers && !state_->has_buffers) return true;
   const auto& reload = state_->parts.shader_reload;

@@ -1,46 +1,83 @@
 #include "session/rendering/device_turns.hpp"
 
 #include <algorithm>
+#include <span>
 
 namespace heliograph::session {
 
 void DeviceTurns::sort(std::vector<Contender>& contenders) const {
-  std::vector<FairShare::Key> moving;
+  std::vector<FairShare::Key> shares;
+  std::vector<FairShare::Key> starting;
   std::vector<FairShare::Key> refining;
-  for (const Contender& contender : contenders) {
-    (contender.refines ? refining : moving).push_back(contender.view);
+  for (const auto& [view, kind] : contenders) {
+    (kind == TurnKind::starting   ? starting
+     : kind == TurnKind::refining ? refining
+                                  : shares)
+        .push_back(view);
   }
+  among_starting_.sort(starting);
   among_refining_.sort(refining);
-  if (!refining.empty()) moving.push_back(all_refining());
-  shares_.sort(moving);
+  if (!starting.empty()) shares.push_back(all_starting());
+  if (!refining.empty()) shares.push_back(all_refining());
+  shares_.sort(shares);
   contenders.clear();
-  for (const FairShare::Key key : moving) {
-    if (key != all_refining()) {
-      contenders.push_back({.view = key, .refines = false});
-      continue;
-    }
-    for (const FairShare::Key view : refining) {
-      contenders.push_back({.view = view, .refines = true});
+  const auto append = [&](std::span<const FairShare::Key> views, TurnKind kind) {
+    for (const FairShare::Key view : views) contenders.push_back({.view = view, .kind = kind});
+  };
+  for (const FairShare::Key key : shares) {
+    if (key == all_starting()) {
+      append(starting, TurnKind::starting);
+    } else if (key == all_refining()) {
+      append(refining, TurnKind::refining);
+    } else {
+      append({&key, 1}, TurnKind::moving);
     }
   }
+}
+
+FairShare::Key DeviceTurns::in_shares(const Contender& contender) const {
+  switch (contender.kind) {
+    case TurnKind::moving:
+      break;
+    case TurnKind::starting:
+      return all_starting();
+    case TurnKind::refining:
+      return all_refining();
+  }
+  return contender.view;
 }
 
 std::optional<Clock::time_point> DeviceTurns::hold_back(const Contender& contender,
                                                         Clock::time_point now) {
-  if (!contender.refines) return shares_.hold_back(contender.view, now);
+  const auto until = shares_.hold_back(in_shares(contender), now);
+  if (contender.kind != TurnKind::refining) return until;
   // Without a value it is the least.
-  return std::max(shares_.hold_back(all_refining(), now),
-                  among_refining_.hold_back(contender.view, now));
+  return std::max(until, among_refining_.hold_back(contender.view, now));
 }
 
 void DeviceTurns::charge(const Contender& contender, Clock::time_point begin,
                          Clock::time_point end) {
-  if (contender.refines) among_refining_.charge(contender.view, begin, end);
-  shares_.charge(contender.refines ? all_refining() : contender.view, begin, end);
+  Clock::time_point charged = end;
+  switch (contender.kind) {
+    case TurnKind::moving: {
+      const FairShare::Duration taken = end - begin;
+      moving_frame_ += (taken - moving_frame_) / (moving_frame_ == FairShare::Duration(0) ? 1 : 4);
+      break;
+    }
+    case TurnKind::starting:
+      among_starting_.charge(contender.view, begin, end);
+      if (moving_frame_ > FairShare::Duration(0)) charged = std::min(end, begin + moving_frame_);
+      break;
+    case TurnKind::refining:
+      among_refining_.charge(contender.view, begin, end);
+      break;
+  }
+  shares_.charge(in_shares(contender), begin, charged);
 }
 
 void DeviceTurns::remove(FairShare::Key view) {
   shares_.remove(view);
+  among_starting_.remove(view);
   among_refining_.remove(view);
 }
 

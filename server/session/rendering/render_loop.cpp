@@ -192,7 +192,7 @@ bool RenderLoop::advance_next(const Views& views) {
   std::vector<DeviceTurns::Contender> ready;
   for (const auto& view : views) {
     if (view->awake() && !view->in_flight()) {
-      ready.push_back({.view = view.get(), .refines = view->refines()});
+      ready.push_back({.view = view.get(), .kind = view->turn_kind()});
     }
   }
   turns_.sort(ready);
@@ -222,10 +222,8 @@ bool RenderLoop::advance_next(const Views& views) {
 bool RenderLoop::draw_in_turn(const std::shared_ptr<SessionView>& view) {
   if (stopping_ || !device_ready_) return false;
   const Clock::time_point start = Clock::now();
-  const DeviceTurns::Contender contender{.view = view.get(), .refines = view->refines()};
-  // Beside images that move, those that are refined keep to one part of the device's time: their
-  // frames are drawn alone.
-  if (contender.refines && !in_flight_.empty() && images_move()) {
+  const DeviceTurns::Contender contender{.view = view.get(), .kind = view->turn_kind()};
+  if (waits_for_others_in_flight(contender.kind)) {
     others_wait_ = true;
     return false;
   }
@@ -239,11 +237,20 @@ bool RenderLoop::draw_in_turn(const std::shared_ptr<SessionView>& view) {
   // The device goes on with this frame while that of another view is shown.
   while (view->in_flight() && in_flight_.size() >= engine_.frames_at_once()) finish_a_frame(false);
   if (view->in_flight() && device_ready_) {
-    in_flight_.push_back({view, start, contender.refines});
+    in_flight_.push_back({view, start, contender.kind});
   } else if (work == SessionView::Work::drawing) {
-    frame_finished(*view, std::max(start, device_free_), contender.refines);
+    frame_finished(*view, std::max(start, device_free_), contender.kind);
   }
   return work != SessionView::Work::none;
+}
+
+/// Beside images that move, those that are refined keep to one part of the device's time: their
+/// frames are drawn alone. First frames begin one after the other.
+bool RenderLoop::waits_for_others_in_flight(TurnKind kind) const {
+  if (kind == TurnKind::moving || !images_move()) return false;
+  return kind == TurnKind::refining
+             ? !in_flight_.empty()
+             : std::ranges::find(in_flight_, kind, &InFlight::kind) != in_flight_.end();
 }
 
 /// One that is done, or the oldest. False: no view has one in flight. `alone`: no other view has a
@@ -265,15 +272,15 @@ bool RenderLoop::finish_a_frame(bool alone) {
     view.finish_frame(device_free_);
   };
   if (attempt(view, finish)) {
-    frame_finished(view, std::max(finished.begun, device_free_), finished.refines);
-    if (view.in_flight()) in_flight_.push_back({finished.view, followed, false});
+    frame_finished(view, std::max(finished.begun, device_free_), finished.kind);
+    if (view.in_flight()) in_flight_.push_back({finished.view, followed, TurnKind::moving});
   }
   return true;
 }
 
-void RenderLoop::frame_finished(SessionView& view, Clock::time_point begun, bool refines) {
+void RenderLoop::frame_finished(SessionView& view, Clock::time_point begun, TurnKind kind) {
   device_free_ = Clock::now();
-  turns_.charge({.view = &view, .refines = refines}, begun, device_free_);
+  turns_.charge({.view = &view, .kind = kind}, begun, device_free_);
   {
     const std::lock_guard lock(mutex_);
     busy_.add(begun, device_free_);

@@ -82,9 +82,10 @@ class RenderLoop {
   void remove_closed();
   bool advance_next(const Views& views);
   bool draw_in_turn(const std::shared_ptr<SessionView>& view);
+  bool waits_for_others_in_flight(TurnKind kind) const;
   SessionView::Work advance(SessionView& view, bool may_draw);
   bool finish_a_frame(bool alone);
-  void frame_finished(SessionView& view, Clock::time_point begun, bool refines);
+  void frame_finished(SessionView& view, Clock::time_point begun, TurnKind kind);
   /// Runs `work` of a view, whose failure is not that of others. @returns whether it succeeded
   bool attempt(SessionView& view, const std::function<void()>& work);
   std::optional<Clock::time_point> next_due(const Views& views) const;
@@ -123,7 +124,7 @@ class RenderLoop {
   struct InFlight {
     std::shared_ptr<SessionView> view;
     Clock::time_point begun;
-    bool refines = false;
+    TurnKind kind = TurnKind::moving;
   };
   std::deque<InFlight> in_flight_;  // in the order in which they have begun
   Clock::time_point device_free_;   // when the device was done with the last frame

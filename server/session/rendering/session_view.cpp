@@ -215,7 +215,15 @@ bool SessionView::moves() const {
   return Clock::now() < moving_frame_at_ + sharing_window;
 }
 
-/// A view whose newest state has waited for its turn is static by then, but not shown yet.
+TurnKind SessionView::turn_kind() const {
+  if (refines()) return TurnKind::refining;
+  // What is being prepared is not touched.
+  const bool starts = preparing_.valid() || !newest_ || !renderer_->has_begun();
+  return starts ? TurnKind::starting : TurnKind::moving;
+}
+
+/// Whether its next frame only adds samples to a static image, and no capture waits for it. A view
+/// whose newest state has waited for its turn is static by then, but not shown yet.
 bool SessionView::refines() const {
   // What is being prepared is not touched.
   if (preparing_.valid() || !newest_ || newest_version_ != session_->version()) return false;

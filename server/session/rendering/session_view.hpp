@@ -9,6 +9,7 @@
 
 #include "render/api/renderer.hpp"
 #include "session/edits/animated_parts.hpp"
+#include "session/rendering/device_turns.hpp"
 #include "session/rendering/frame_readers.hpp"
 #include "session/rendering/view_state.hpp"
 #include "session/session.hpp"
@@ -49,8 +50,7 @@ class SessionView {
 
   /// Whether there may be something to do.
   bool awake() const;
-  /// Whether its next frame only adds samples to a static image, and no capture waits for it.
-  bool refines() const;
+  TurnKind turn_kind() const;
   /// Whether its frames of a moving view take turns with those of other sessions.
   bool moves() const;
   /// Whether the next frame is one of a moving view.
@@ -92,6 +92,7 @@ class SessionView {
  private:
   bool needed() const;
   bool watched() const;
+  bool refines() const;
   void make_renderer();
   void apply(const protocol::Settings& settings);
   void publish_buffers();

@@ -17,7 +17,7 @@ class DeviceTurnsTest : public testing::Test {
 
   struct View {
     Milliseconds cost;
-    bool refines = false;
+    TurnKind kind = TurnKind::moving;
     Milliseconds pause{0};
     Clock::time_point ready{};
     Milliseconds worked{0};
@@ -43,7 +43,7 @@ class DeviceTurnsTest : public testing::Test {
 
   View* choose() {
     std::vector<DeviceTurns::Contender> contenders;
-    for (View& view : views_) contenders.push_back({.view = &view, .refines = view.refines});
+    for (View& view : views_) contenders.push_back({.view = &view, .kind = view.kind});
     turns_.sort(contenders);
     for (const DeviceTurns::Contender& contender : contenders) {
       auto* const view = static_cast<View*>(const_cast<void*>(contender.view));
@@ -59,8 +59,16 @@ class DeviceTurnsTest : public testing::Test {
     time_ += view.cost;
     view.worked += view.cost;
     ++view.frames;
-    view.ready = time_ + view.pause;
-    turns_.charge({.view = &view, .refines = view.refines}, begin, time_);
+    view.ready = time_ + (view.kind == TurnKind::starting ? 1h : view.pause);
+    turns_.charge({.view = &view, .kind = view.kind}, begin, time_);
+  }
+
+  void add_starting(int count) {
+    for (int i = 0; i < count; ++i) add({.cost = 15ms, .kind = TurnKind::starting});
+  }
+
+  bool all_have_started() const {
+    return std::ranges::all_of(views_, [](const View& view) { return view.frames > 0; });
   }
 
   DeviceTurns turns_;
@@ -69,7 +77,7 @@ class DeviceTurnsTest : public testing::Test {
 };
 
 TEST_F(DeviceTurnsTest, ManyRefiningViewsDelayAMovingOneByOneFrame) {
-  for (int i = 0; i < 49; ++i) add({.cost = 40ms, .refines = true});
+  for (int i = 0; i < 49; ++i) add({.cost = 40ms, .kind = TurnKind::refining});
   View& moving = add({.cost = 20ms, .pause = 4ms});
   run_for(10s);
   EXPECT_LE(moving.longest_wait, 40ms);
@@ -81,7 +89,7 @@ TEST_F(DeviceTurnsTest, AnOverloadThatEndsLeavesNoBacklog) {
   for (int i = 0; i < 50; ++i) add({.cost = 20ms, .pause = 4ms});
   run_for(10s);
   View& moving = views_.front();
-  for (View& view : views_) view.refines = &view != &moving;
+  for (View& view : views_) view.kind = &view == &moving ? TurnKind::moving : TurnKind::refining;
   run_for(1s);
   moving.longest_wait = {};
   run_for(10s);
@@ -89,10 +97,10 @@ TEST_F(DeviceTurnsTest, AnOverloadThatEndsLeavesNoBacklog) {
 }
 
 TEST_F(DeviceTurnsTest, ARefiningViewThatMovesAgainIsDrawnNext) {
-  for (int i = 0; i < 50; ++i) add({.cost = 40ms, .refines = true});
+  for (int i = 0; i < 50; ++i) add({.cost = 40ms, .kind = TurnKind::refining});
   run_for(10s);
   View& moving = views_.front();
-  moving.refines = false;
+  moving.kind = TurnKind::moving;
   moving.ready = time_;
   moving.longest_wait = {};
   run_for(1s);
@@ -100,27 +108,51 @@ TEST_F(DeviceTurnsTest, ARefiningViewThatMovesAgainIsDrawnNext) {
 }
 
 TEST_F(DeviceTurnsTest, RefiningViewsShareAllOfAnIdleDeviceEqually) {
-  for (int i = 0; i < 4; ++i) add({.cost = 10ms, .refines = true});
+  for (int i = 0; i < 4; ++i) add({.cost = 10ms, .kind = TurnKind::refining});
   run_for(4s);
   for (const View& view : views_) EXPECT_EQ(view.frames, 100);
 }
 
 TEST_F(DeviceTurnsTest, OneOfEachKindHasHalfOfTheDevice) {
-  View& refining = add({.cost = 40ms, .refines = true});
+  View& refining = add({.cost = 40ms, .kind = TurnKind::refining});
   View& moving = add({.cost = 20ms});
   run_for(10s);
   EXPECT_NEAR(static_cast<double>(refining.worked.count()), 5000.0, 100.0);
   EXPECT_NEAR(static_cast<double>(moving.worked.count()), 5000.0, 100.0);
 }
 
+TEST_F(DeviceTurnsTest, SessionsThatOpenDelayAMovingOneByOneFirstFrame) {
+  View& moving = add({.cost = 2ms, .pause = 1ms});
+  run_for(1s);
+  moving.longest_wait = {};
+  add_starting(16);
+  run_for(400ms);
+  EXPECT_TRUE(all_have_started());
+  EXPECT_LE(moving.longest_wait, 15ms);
+}
+
+TEST_F(DeviceTurnsTest, FirstFramesComeSoonBesideManyMovingViews) {
+  for (int i = 0; i < 16; ++i) add({.cost = 2ms, .pause = 1ms});
+  run_for(1s);
+  add_starting(16);
+  run_for(1s);
+  EXPECT_TRUE(all_have_started());
+}
+
+TEST_F(DeviceTurnsTest, FirstFramesAloneWaitForNothing) {
+  add_starting(16);
+  run_for(16 * 15ms);
+  EXPECT_TRUE(all_have_started());
+}
+
 TEST_F(DeviceTurnsTest, ARemovedViewHasNoDebt) {
   const int key = 0;
   const int other = 0;
-  turns_.charge({.view = &key, .refines = true}, time_, time_ + 10s);
+  turns_.charge({.view = &key, .kind = TurnKind::refining}, time_, time_ + 10s);
   turns_.remove(&key);
-  turns_.charge({.view = &other, .refines = true}, time_ + 10s, time_ + 11s);
-  std::vector<DeviceTurns::Contender> contenders{{.view = &other, .refines = true},
-                                                 {.view = &key, .refines = true}};
+  turns_.charge({.view = &other, .kind = TurnKind::refining}, time_ + 10s, time_ + 11s);
+  std::vector<DeviceTurns::Contender> contenders{{.view = &other, .kind = TurnKind::refining},
+                                                 {.view = &key, .kind = TurnKind::refining}};
   turns_.sort(contenders);
   EXPECT_EQ(contenders.front().view, &key);
 }
