@@ -141,7 +141,10 @@ void FramePlan::divide(std::span<const PassUses> passes) {
   std::optional<std::uint32_t> refused = read_too_early(order_, passes);
   for (std::size_t i = 0; i < parts_.early && !refused; ++i) {
     for (const Use& use : passes[order_.passes[i]].uses) {
-      if (resources_[use.resource].part != Resource::Part::none) refused = use.resource;
+      const bool comes_back = writes(use) && use.resource == read_back_.index;
+      if (comes_back || resources_[use.resource].part != Resource::Part::none) {
+        refused = use.resource;
+      }
     }
   }
   if (refused) {

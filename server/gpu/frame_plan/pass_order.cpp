@@ -52,11 +52,15 @@ PassOrder in_turn(std::size_t passes) {
   return order;
 }
 
-/// How many passes at the start are early.
-std::size_t early_count(const PassOrder& order, std::span<const PassUses> passes) {
-  const auto first_late =
-      std::ranges::find_if(order.passes, [&](std::uint32_t i) { return !passes[i].early; });
-  return static_cast<std::size_t>(first_late - order.passes.begin());
+/// Where the early passes at the start end, behind those on the host that come first: the device
+/// has nothing to do for those. 0: there are none.
+std::size_t early_end(const PassOrder& order, std::span<const PassUses> passes) {
+  const auto first_device =
+      std::ranges::find_if(order.passes, [&](std::uint32_t i) { return !passes[i].on_host; });
+  const auto first_late = std::find_if(first_device, order.passes.end(),
+                                       [&](std::uint32_t i) { return !passes[i].early; });
+  return first_late == first_device ? 0
+                                    : static_cast<std::size_t>(first_late - order.passes.begin());
 }
 
 bool uses(const PassUses& pass, std::uint32_t resource) {
@@ -66,7 +70,7 @@ bool uses(const PassUses& pass, std::uint32_t resource) {
 }  // namespace
 
 FrameParts divide_frame(const PassOrder& order, std::span<const PassUses> passes) {
-  FrameParts parts{.early = early_count(order, passes)};
+  FrameParts parts{.early = early_end(order, passes)};
   parts.closed = parts.early;
   for (std::size_t i = 0; i < parts.early; ++i) {
     for (const Use& use : passes[order.passes[i]].uses) {
@@ -80,7 +84,7 @@ FrameParts divide_frame(const PassOrder& order, std::span<const PassUses> passes
 
 std::optional<std::uint32_t> read_too_early(const PassOrder& order,
                                             std::span<const PassUses> passes) {
-  for (std::size_t i = 0; i < early_count(order, passes); ++i) {
+  for (std::size_t i = 0; i < early_end(order, passes); ++i) {
     for (const Use& read : passes[order.passes[i]].uses) {
       if (!reads(read)) continue;
       const bool written = std::ranges::any_of(passes, [&](const PassUses& pass) {

@@ -31,11 +31,12 @@ struct PassOrder {
 
 /// Where a frame is divided, in passes from its start in their order.
 struct FrameParts {
-  std::size_t early = 0;   // passes that may run during the end of the frame before; 0: none
+  std::size_t early = 0;   // passes that may run during the end of the frame before, and those on
+                           // the host in front of them; 0: none
   std::size_t closed = 0;  // behind these no pass uses what early ones have written
 };
 
-/// Of the early passes at the start of the order.
+/// By the early passes at the start of the order.
 FrameParts divide_frame(const PassOrder& order, std::span<const PassUses> passes);
 
 /// A resource that one of the early passes reads and any pass writes, if there is one: it may still

@@ -53,6 +53,26 @@ TEST(PassOrder, EarlyPassesComeFirstAndEndWithTheirLastUser) {
   EXPECT_FALSE(read_too_early(order, passes));
 }
 
+TEST(PassOrder, EarlyPassesMayFollowPassesOnTheHost) {
+  std::vector<PassUses> passes = two_chains();
+  passes[3].early = true;
+  passes.insert(passes.begin(), PassUses{{writing(30)}, true});
+  const PassOrder order = overlapping_order(passes);
+  EXPECT_EQ(order.passes, (Numbers{0, 4, 1, 2, 5, 3, 6, 7}));
+  EXPECT_EQ(barriers(order), (Numbers{2, 3, 7}));
+  const FrameParts parts = divide_frame(order, passes);
+  EXPECT_EQ(parts.early, 2u);
+  EXPECT_EQ(parts.closed, 5u);
+  passes[4].uses.push_back(reading(30));
+  EXPECT_EQ(read_too_early(order, passes), 30u);
+}
+
+TEST(PassOrder, PassesOnTheHostAloneAreNotEarly) {
+  std::vector<PassUses> passes = two_chains();
+  passes.insert(passes.begin(), PassUses{{writing(30)}, true});
+  EXPECT_EQ(divide_frame(overlapping_order(passes), passes).early, 0u);
+}
+
 TEST(PassOrder, FramesWithoutEarlyPassesAreWhole) {
   const std::vector<PassUses> passes = two_chains();
   const FrameParts parts = divide_frame(overlapping_order(passes), passes);

@@ -1,7 +1,10 @@
 #include "render/passes/ground/ground.hpp"
 
 #include <algorithm>
-#include <span>
+#include <cstring>
+#include <functional>
+#include <utility>
+#include <vector>
 
 #include "render/kernels/ground/ground.hpp"
 #include "render/passes/formats.hpp"
@@ -37,6 +40,23 @@ int ground_filter_radius(std::uint32_t frames) {
   return frames < 4 ? 3 : frames < 12 ? 2 : frames < 32 ? 1 : 0;
 }
 
+/// The frame before may be on the device, which reads the same lights: nothing but the camera has
+/// changed since. Then they are not written again.
+std::function<void()> write_ground_lights(gpu::FramePlan& plan, const FrameInputs& in,
+                                          gpu::BufferRef lights) {
+  using Lights = std::vector<shared::GroundLight>;
+  return [&plan, in, lights, written = Lights()]() mutable {
+    Lights chosen(shared::ground_lights);
+    const bool separate_sun = in.settings.environment.separate_sun;
+    choose_ground_lights(in.constants, *in.moving.environment().upper_light(separate_sun),
+                         in.moving.lights(), chosen);
+    const std::size_t bytes = chosen.size() * sizeof(shared::GroundLight);
+    if (!written.empty() && std::memcmp(written.data(), chosen.data(), bytes) == 0) return;
+    std::memcpy(plan.get(lights).mapped(), chosen.data(), bytes);
+    written = std::move(chosen);
+  };
+}
+
 }  // namespace
 
 gpu::BufferRef trace_ground(gpu::FramePlan& plan, const FrameInputs& in) {
@@ -50,12 +70,7 @@ gpu::BufferRef trace_ground(gpu::FramePlan& plan, const FrameInputs& in) {
         const auto lights =
             plan.buffer("ground.lights", sizeof(shared::GroundLight) * shared::ground_lights,
                         storage, gpu::Memory::upload);
-        plan.host("ground.lights", [&plan, in, lights] {
-          auto* const first = reinterpret_cast<shared::GroundLight*>(plan.get(lights).mapped());
-          const bool separate_sun = in.settings.environment.separate_sun;
-          choose_ground_lights(in.constants, *in.moving.environment().upper_light(separate_sun),
-                               in.moving.lights(), {first, shared::ground_lights});
-        });
+        plan.host("ground.lights", write_ground_lights(plan, in, lights));
         const tracing::RayStream rays = declare_rays(
             plan, "ground", ground_texels * shared::ground_rays, tracing::RayKind::ambient);
         begin_rays(plan, in, "ground", rays);
