@@ -226,8 +226,8 @@ bool Renderer::begin(const std::function<bool()>& canceled) {
   const bool had_previous = state.has_previous;
   const std::uint32_t age = std::exchange(state.clock.age, had_previous ? state.clock.age + 1 : 0);
   state.make_constants(before);
-  compiled.uniform_weight = uniform_mean_weight(compiled.inputs);
   if (compiled.plan.begin(canceled)) {
+    compiled.uniform_weight = uniform_mean_weight(compiled.inputs);
     state.begun.push_back(begun);
     state.count_sample();
     return true;

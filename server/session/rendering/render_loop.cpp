@@ -233,6 +233,8 @@ bool RenderLoop::draw_in_turn(const std::shared_ptr<SessionView>& view) {
     return false;
   }
   if (view->next_frame_moves()) moved_at_ = start;
+  // Nothing may fail between the begin of a frame and its being listed.
+  in_flight_.reserve(engine_.frames_at_once() + 1);
   const SessionView::Work work = advance(*view, true);
   // The device goes on with this frame while that of another view is shown.
   while (view->in_flight() && in_flight_.size() >= engine_.frames_at_once()) finish_a_frame(false);

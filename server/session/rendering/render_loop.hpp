@@ -126,8 +126,8 @@ class RenderLoop {
     Clock::time_point begun;
     TurnKind kind = TurnKind::moving;
   };
-  std::deque<InFlight> in_flight_;  // in the order in which they have begun
-  Clock::time_point device_free_;   // when the device was done with the last frame
+  std::vector<InFlight> in_flight_;  // in the order in which they have begun
+  Clock::time_point device_free_;    // when the device was done with the last frame
   std::atomic<bool> stopping_ = false;
   stream::JpegEncoder jpeg_;
   Worker encoder_;
