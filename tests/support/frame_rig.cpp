@@ -61,6 +61,12 @@ void FrameRig::set_view(const scene::Camera& camera, std::uint32_t sample) {
   constants_buffers_.upload(constants_, half_constants_);
 }
 
+void FrameRig::draw_smaller(VkExtent2D drawn, const scene::Camera& camera) {
+  options_.extent = drawn;
+  plan_.set_drawn(drawn);
+  set_view(camera);
+}
+
 void FrameRig::run() {
   if (!compiled_) plan_.compile();
   compiled_ = true;

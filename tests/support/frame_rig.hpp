@@ -41,6 +41,8 @@ class FrameRig {
 
   /// Sets the camera of the next frame; the current one becomes the previous one.
   void set_view(const scene::Camera& camera, std::uint32_t sample = 0);
+  /// From now on frames are drawn in the upper left part of the images.
+  void draw_smaller(VkExtent2D drawn, const scene::Camera& camera);
   /// The next set_view() has no view before it.
   void invalidate_history() { has_view_ = false; }
   void set_settings(const protocol::Settings& settings) { settings_ = settings; }

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <set>
 
 #include "render/frame/frame.hpp"
@@ -65,14 +66,16 @@ struct PairRig {
 /// `changed`: mean change by the filter.
 void expect_same(const render::FloatImage& got, const render::FloatImage& alone,
                  const FilterInput& input, const std::string& which) {
+  ASSERT_EQ(got.rgba.size(), alone.rgba.size());
+  const double values = static_cast<double>(got.rgba.size());
   double mean_off = 0.0, changed = 0.0;
-  for (std::size_t i = 0; i < 4 * field_pixels; ++i) {
+  for (std::size_t i = 0; i < got.rgba.size(); ++i) {
     const double off = std::abs(static_cast<double>(got.rgba[i]) - alone.rgba[i]);
     // Signals of 0 to 1 are off by a few steps of half floats.
     ASSERT_LT(off, 2e-3) << which << ", texel " << i / 4 << " channel " << i % 4;
-    mean_off += off / (4.0 * field_pixels);
-    changed +=
-        std::abs(got.rgba[i] - input.signal[i / 4][static_cast<int>(i % 4)]) / (4.0 * field_pixels);
+    mean_off += off / values;
+    const std::size_t texel = i / 4 / got.width * field_width + i / 4 % got.width;
+    changed += std::abs(got.rgba[i] - input.signal[texel][static_cast<int>(i % 4)]) / values;
   }
   EXPECT_LT(mean_off, 1e-4) << which;
   EXPECT_GT(changed, 0.01) << "the filter changes nothing: " << which;
@@ -110,6 +113,37 @@ TEST(AtrousPair, BlursEachSignalAsAlone) {
         }
       }
     }
+  }
+}
+
+/// `see`: sets how a rig is seen or drawn.
+void expect_each_as_alone(const std::function<void(FrameRig&)>& see, const std::string& which) {
+  const TwoSignals in;
+  shared::AtrousConstants of_reflection = plain_constants();
+  of_reflection.flags |= shared::atrous_levels_by_roughness;
+  PairRig pair(in, plain_constants(), of_reflection, 3);
+  FilterRig visibility(in.visibility, plain_constants(), false, 3, by_halves);
+  FilterRig reflection(in.reflection, of_reflection, true, 3, by_halves);
+  for (FrameRig* const rig : {&pair.rig, &visibility.rig, &reflection.rig}) see(*rig);
+  pair.rig.run();
+  expect_same(pair.rig.read(pair.filtered.visibility), visibility.run(), in.visibility,
+              "visibility, " + which);
+  expect_same(pair.rig.read(pair.filtered.specular), reflection.run(), in.reflection,
+              "reflections, " + which);
+}
+
+TEST(AtrousPair, BlursEachSignalAsAloneInOrthographicViews) {
+  scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
+  camera.orthographic_height = 4.0f;
+  expect_each_as_alone([&](FrameRig& rig) { rig.set_view(camera); }, "orthographic");
+}
+
+TEST(AtrousPair, BlursEachSignalAsAloneInReducedFrames) {
+  const scene::Camera camera = look({0, 0, 3}, {0, 0, 0});
+  for (const VkExtent2D drawn : {VkExtent2D{25, 16}, {17, 23}, {5, 3}}) {
+    expect_each_as_alone(
+        [&](FrameRig& rig) { rig.draw_smaller(drawn, camera); },
+        std::to_string(drawn.width) + " by " + std::to_string(drawn.height) + " pixels");
   }
 }
 
