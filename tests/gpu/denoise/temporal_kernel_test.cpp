@@ -165,6 +165,9 @@ TEST_F(TemporalKernel, MatchesShadersForEverySetting) {
   view.settings.specular_temporal.rectification_radius = 5;
   view.settings.specular_temporal.rectification_scale = 0.5f;
   expect_same_over_frames(view, "other windows");
+  view.settings.shadow_temporal.rectification_radius = 8;
+  view.settings.specular_temporal.rectification_radius = 8;
+  expect_same_over_frames(view, "the largest windows");
 
   view = {.motion = {.geometry_moved = true}};
   view.settings.shadow_temporal.rectification = view.settings.specular_temporal.rectification =

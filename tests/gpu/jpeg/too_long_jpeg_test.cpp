@@ -17,12 +17,24 @@
 namespace heliograph::test {
 namespace {
 
-/// No interval fits.
-gpu::Buffer tables_without_room(const gpu::Device& device) {
+/// For intervals of at most so many bytes.
+gpu::Buffer tables_with_room(const gpu::Device& device, std::uint32_t bytes) {
   shared::JpegTables tables = render::jpeg_tables();
-  tables.most_interval_bytes = 0;
+  tables.most_interval_bytes = bytes;
   return gpu::upload_buffer(device, "jpeg.tables", std::as_bytes(std::span(&tables, 1)),
                             VK_BUFFER_USAGE_STORAGE_BUFFER_BIT);
+}
+
+gpu::Buffer tables_without_room(const gpu::Device& device) {
+  return tables_with_room(device, 0);
+}
+
+/// Of a file: behind the segment that begins its only scan, up to the marker of its end.
+std::uint32_t coded_bytes(std::span<const std::uint8_t> file) {
+  std::size_t at = 2;
+  while (file[at + 1] != 0xda) at += 2u + file[at + 2] * 256u + file[at + 3];
+  at += 2u + file[at + 2] * 256u + file[at + 3];
+  return static_cast<std::uint32_t>(file.size() - 2 - at);
 }
 
 /// Opaque, each byte of a colour unlike its neighbours.
@@ -56,6 +68,27 @@ TEST(TooLongJpeg, LeavesThePixelsOfTheWholeImage) {
     EXPECT_TRUE(render::read_jpeg(plan, encoded, *request).bytes.empty());
     EXPECT_EQ(render::read_unencoded(plan, encoded), rgba);
   }
+}
+
+TEST(TooLongJpeg, IsOneWhoseIntervalIsAByteLongerThanThereIsRoomFor) {
+  const VkExtent2D size{64, 16};  // one interval
+  const std::vector<std::uint8_t> rgba = distinct_pixels(size);
+  const render::JpegRequest request{.quality = 95};
+  const auto encode = [&](const gpu::Buffer& tables) {
+    gpu::FramePlan plan(device(), size);
+    const gpu::ImageRef shown = plan.image("shown", VK_FORMAT_R8G8B8A8_UNORM);
+    plan.get(shown).upload(std::as_bytes(std::span(rgba)));
+    const render::EncodedOutput encoded =
+        render::encode_jpeg(plan, engine().parts().programs, tables, shown, size, request);
+    plan.compile();
+    plan.execute();
+    return render::read_jpeg(plan, encoded, request).bytes;
+  };
+  const auto file = encode(render::make_jpeg_tables(device()));
+  const std::uint32_t length = coded_bytes(file);
+  ASSERT_GT(length, 500u);
+  EXPECT_EQ(encode(tables_with_room(device(), length)), file);
+  EXPECT_TRUE(encode(tables_with_room(device(), length - 1)).empty());
 }
 
 /// Frames of an engine that encodes, as on a GPU, and none of whose JPEGs fits.
