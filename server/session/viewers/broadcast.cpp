@@ -1,6 +1,7 @@
 #include "session/viewers/broadcast.hpp"
 
 #include <algorithm>
+#include <new>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -83,12 +84,32 @@ bool suffices(const render::Frame& frame, const EncodingPlan& plan) {
 
 }  // namespace
 
+/// Counts an encoding for as long as it exists: until it has run, has failed, or was not given to
+/// the encoder for want of memory.
+class Broadcast::CountedEncoding {
+ public:
+  CountedEncoding(std::shared_ptr<std::atomic<int>> count, std::shared_ptr<WakeEvent> wake)
+      : count_(std::move(count)), wake_(std::move(wake)) {
+    ++*count_;
+  }
+  ~CountedEncoding() {
+    --*count_;
+    wake_->notify();
+  }
+  CountedEncoding(const CountedEncoding&) = delete;
+  CountedEncoding& operator=(const CountedEncoding&) = delete;
+
+ private:
+  std::shared_ptr<std::atomic<int>> count_;
+  std::shared_ptr<WakeEvent> wake_;
+};
+
 /// One frame that is encoded, on the thread of the encoder.
 struct Broadcast::Encoding {
   std::shared_ptr<Session> session;
   BroadcastServices services;
   std::shared_ptr<stream::FrameEncoder> encoder;
-  std::shared_ptr<std::atomic<int>> count;
+  std::shared_ptr<CountedEncoding> counted;
   std::shared_ptr<const RenderedFrame> rendered;
   FramePurpose purpose;
   std::uint64_t number;
@@ -99,7 +120,7 @@ struct Broadcast::Encoding {
   void run() {
     std::vector<stream::SharedFrame> frames;
     try {
-      frames = encode();
+      frames = encode_for_purpose();
     } catch (...) {
       // Otherwise viewers would wait for this frame.
       finish({});
@@ -114,8 +135,17 @@ struct Broadcast::Encoding {
     protocol::StatsFrame stats = stats_of(*rendered, services.tracer, phase_of(purpose));
     stats.encoder = encoded_by;
     viewers.publish_stats(std::move(stats));
-    --*count;
-    services.wake->notify();
+    counted.reset();
+  }
+
+  /// No other frame of a static image may follow: once more where there was no memory.
+  std::vector<stream::SharedFrame> encode_for_purpose() {
+    if (purpose == FramePurpose::interactive) return encode();
+    try {
+      return encode();
+    } catch (const std::bad_alloc&) {
+      return encode();
+    }
   }
 
   std::vector<stream::SharedFrame> encode() {
@@ -231,19 +261,17 @@ bool Broadcast::pump() {
     due_samples_ = 0;  // the next frame is sent, however few samples it adds
     return false;
   }
+  auto counted = std::make_shared<CountedEncoding>(encoding_, services_.wake);
   started_ = number_;
-  ++*encoding_;
-  const bool posted = services_.encoder.post(
+  return services_.encoder.post(
       [encoding = Encoding{.session = session_,
                            .services = services_,
                            .encoder = encoder_,
-                           .count = encoding_,
+                           .counted = std::move(counted),
                            .rendered = due_,
                            .purpose = due_purpose_,
                            .number = number_,
                            .plan = std::move(plan)}]() mutable { encoding.run(); });
-  if (!posted) --*encoding_;
-  return posted;
 }
 
 }  // namespace heliograph::session

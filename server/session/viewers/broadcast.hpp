@@ -53,6 +53,7 @@ class Broadcast {
   bool behind() const { return encoding() && started_ != number_; }
 
  private:
+  class CountedEncoding;
   struct Encoding;
   bool take_pixels();
   bool encoding() const { return *encoding_ != 0; }
