@@ -246,7 +246,7 @@ async def sweep_driver(sweep):
 
 async def sweep_shortly(sweep):
     """A call of every kind, in seconds."""
-    for action, points in (("pages", 4), ("open", 4), ("capture", 4), ("load", 3)):
+    for action, points in (("pages", 4), ("open", 4), ("render", 40), ("capture", 4), ("load", 3)):
         await sweep.sweep("operator_new", errno.ENOMEM, action, points=points,
                           around_end=15 if action == "pages" else 0)
     await sweep.sweep("pread", errno.EIO, "load", points=1, only=".glb")
