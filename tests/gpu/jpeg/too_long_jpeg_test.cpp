@@ -46,6 +46,26 @@ std::vector<std::uint8_t> distinct_pixels(VkExtent2D size) {
   return rgba;
 }
 
+/// An image that the device has encoded with these tables.
+struct EncodedImage {
+  EncodedImage(VkExtent2D size, const std::vector<std::uint8_t>& rgba, const gpu::Buffer& tables,
+               const render::JpegRequest& wanted)
+      : request(wanted), plan(device(), size) {
+    const gpu::ImageRef shown = plan.image("shown", VK_FORMAT_R8G8B8A8_UNORM);
+    plan.get(shown).upload(std::as_bytes(std::span(rgba)));
+    encoded = render::encode_jpeg(plan, engine().parts().programs, tables, shown, size, request);
+    plan.compile();
+    plan.execute();
+  }
+  std::vector<std::uint8_t> jpeg() const {
+    return render::read_jpeg(plan, encoded, *request).bytes;
+  }
+
+  const std::optional<render::JpegRequest> request;  // which the plan refers to
+  gpu::FramePlan plan;
+  render::EncodedOutput encoded;
+};
+
 TEST(TooLongJpeg, LeavesThePixelsOfTheWholeImage) {
   const struct {
     VkExtent2D size;
@@ -57,32 +77,17 @@ TEST(TooLongJpeg, LeavesThePixelsOfTheWholeImage) {
     SCOPED_TRACE(std::to_string(size.width) + "x" + std::to_string(size.height) + " to " +
                  std::to_string(percent));
     const std::vector<std::uint8_t> rgba = distinct_pixels(size);
-    const std::optional<render::JpegRequest> request{{.quality = 80, .percent = percent}};
-    gpu::FramePlan plan(device(), size);
-    const gpu::ImageRef shown = plan.image("shown", VK_FORMAT_R8G8B8A8_UNORM);
-    plan.get(shown).upload(std::as_bytes(std::span(rgba)));
-    const render::EncodedOutput encoded =
-        render::encode_jpeg(plan, engine().parts().programs, tables, shown, size, request);
-    plan.compile();
-    plan.execute();
-    EXPECT_TRUE(render::read_jpeg(plan, encoded, *request).bytes.empty());
-    EXPECT_EQ(render::read_unencoded(plan, encoded), rgba);
+    const EncodedImage image(size, rgba, tables, {.quality = 80, .percent = percent});
+    EXPECT_TRUE(image.jpeg().empty());
+    EXPECT_EQ(render::read_unencoded(image.plan, image.encoded), rgba);
   }
 }
 
 TEST(TooLongJpeg, IsOneWhoseIntervalIsAByteLongerThanThereIsRoomFor) {
   const VkExtent2D size{64, 16};  // one interval
   const std::vector<std::uint8_t> rgba = distinct_pixels(size);
-  const render::JpegRequest request{.quality = 95};
   const auto encode = [&](const gpu::Buffer& tables) {
-    gpu::FramePlan plan(device(), size);
-    const gpu::ImageRef shown = plan.image("shown", VK_FORMAT_R8G8B8A8_UNORM);
-    plan.get(shown).upload(std::as_bytes(std::span(rgba)));
-    const render::EncodedOutput encoded =
-        render::encode_jpeg(plan, engine().parts().programs, tables, shown, size, request);
-    plan.compile();
-    plan.execute();
-    return render::read_jpeg(plan, encoded, request).bytes;
+    return EncodedImage(size, rgba, tables, {.quality = 95}).jpeg();
   };
   const auto file = encode(render::make_jpeg_tables(device()));
   const std::uint32_t length = coded_bytes(file);
