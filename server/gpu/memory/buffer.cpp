@@ -75,7 +75,7 @@ Buffer::~Buffer() {
   vkDestroyBufferView(device_->handle(), view_, nullptr);
   if (shared_) return;
   vkDestroyBuffer(device_->handle(), handle_, nullptr);
-  vkFreeMemory(device_->handle(), memory_, nullptr);
+  device_->free(memory_);
 }
 
 void Buffer::swap(Buffer& other) noexcept {

@@ -177,7 +177,7 @@ Image::~Image() {
   for (const VkImageView view : level_views_) vkDestroyImageView(device_->handle(), view, nullptr);
   vkDestroyImageView(device_->handle(), view_, nullptr);
   vkDestroyImage(device_->handle(), handle_, nullptr);
-  vkFreeMemory(device_->handle(), memory_, nullptr);
+  device_->free(memory_);
 }
 
 void Image::swap(Image& other) noexcept {

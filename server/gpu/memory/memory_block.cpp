@@ -12,13 +12,13 @@ MemoryBlock::MemoryBlock(const Device& device, const VkMemoryRequirements& requi
   if (!device.is_cpu()) return;
   void* address = nullptr;
   const VkResult mapped = vkMapMemory(device.handle(), memory_, 0, VK_WHOLE_SIZE, 0, &address);
-  if (mapped != VK_SUCCESS) vkFreeMemory(device.handle(), memory_, nullptr);
+  if (mapped != VK_SUCCESS) device.free(memory_);
   check(mapped, "map shared memory");
   mapped_ = static_cast<std::byte*>(address);
 }
 
 MemoryBlock::~MemoryBlock() {
-  vkFreeMemory(device_.handle(), memory_, nullptr);
+  device_.free(memory_);
 }
 
 }  // namespace heliograph::gpu
