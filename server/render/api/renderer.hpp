@@ -30,12 +30,13 @@ enum class PartChange { edit, animation };
 /// Not thread safe: one thread calls it.
 class Renderer {
  public:
-  explicit Renderer(Engine& engine);
+  /// Shows `scene`, as set_scene says. Any thread may call it.
+  explicit Renderer(Engine& engine, std::shared_ptr<const SceneResources> scene = nullptr);
   ~Renderer();
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Null is the empty scene, which every renderer starts with.
+  /// Null is the empty scene.
   void set_scene(std::shared_ptr<const SceneResources> scene);
   /// Other lights, in the default pose, and other values of materials than those of the scene's
   /// file, for this renderer alone. Lights: those of the scene, of the same kinds, then any others,

@@ -33,15 +33,15 @@ std::uint32_t drawn_side(std::uint32_t side, float scale) {
   return std::max(1u, static_cast<std::uint32_t>(std::lround(scale * static_cast<float>(side))));
 }
 
-Renderer::Renderer(Engine& engine)
+Renderer::Renderer(Engine& engine, std::shared_ptr<const SceneResources> scene)
     : state_(std::make_unique<State>(engine.parts(), engine.empty_scene())) {
-  set_scene(nullptr);
+  set_scene(std::move(scene));
 }
 Renderer::~Renderer() = default;
 
 void Renderer::set_scene(std::shared_ptr<const SceneResources> scene) {
   // The plan refers to the old scene: it is freed first.
-  state_->compiled.reset();
+  state_->free_frame_plan();
   state_->scene = scene ? std::move(scene) : state_->nothing;
   state_->moving.emplace(state_->parts.device, *state_->parts.tracer, state_->scene);
   state_->moving->set_plain(is_plain(state_->settings));
@@ -52,7 +52,7 @@ void Renderer::set_scene(std::shared_ptr<const SceneResources> scene) {
 void Renderer::set_lights(std::span<const shared::Light> lights, PartChange change) {
   const bool moves = change == PartChange::animation || only_move(state_->moving->lights(), lights);
   // The plan refers to the table of lights, which another number of them replaces.
-  if (lights.size() != state_->moving->lights().size()) state_->compiled.reset();
+  if (lights.size() != state_->moving->lights().size()) state_->free_frame_plan();
   if (state_->moving->set_lights(lights)) {
     state_->discard_frame_plan();
   } else {
@@ -72,14 +72,14 @@ void Renderer::set_materials(std::span<const shared::Material> materials,
 }
 
 void Renderer::set_environment(std::shared_ptr<const LitEnvironment> environment) {
-  state_->compiled.reset();
+  state_->free_frame_plan();
   state_->moving->set_environment(environment ? std::move(environment)
                                               : state_->scene->environment);
   state_->discard_frame_plan();
 }
 
 void Renderer::set_hidden(std::vector<bool> hidden) {
-  state_->compiled.reset();  // refers to the structure
+  state_->free_frame_plan();  // refers to the structure
   state_->moving->hide(std::move(hidden));
   state_->discard_frame_plan();
 }

@@ -36,15 +36,21 @@ bool Renderer::State::reference_takes_over() const {
 
 /// Changes of size, scene and settings that follow each other cost one plan together.
 void Renderer::State::discard_frame_plan() {
-  compiled.reset();
+  if (compiled) discarded = std::move(compiled);
   has_buffers = false;
   has_previous = false;
   sample_index = 0;
   restart_accumulation();
 }
 
+void Renderer::State::free_frame_plan() {
+  compiled.reset();
+  discarded.reset();
+}
+
 CompiledFrame& Renderer::State::frame_plan() {
   if (compiled) return *compiled;
+  discarded.reset();
   const Section& section = moving->section();
   if (!section.planes.empty()) section_tracer.emplace(*parts.tracer, parts.programs, section);
   const FrameInputs inputs{parts.programs,
@@ -98,7 +104,7 @@ void Renderer::State::change_settings(const protocol::Settings& changed) {
 
 void Renderer::State::explode(float amount) {
   // The plan refers to the structure of a scene that comes apart, or together.
-  if ((amount > 0.0f) != (settings.view.explode > 0.0f)) compiled.reset();
+  if ((amount > 0.0f) != (settings.view.explode > 0.0f)) free_frame_plan();
   if (moving->set_explosion(amount)) discard_frame_plan();
 }
 

@@ -40,7 +40,10 @@ struct Renderer::State {
     std::uint32_t samples = 0;  // with it
   };
 
+  /// Its memory is freed before another plan is made.
   void discard_frame_plan();
+  /// At once: what it refers to is replaced.
+  void free_frame_plan();
   CompiledFrame& frame_plan();
   VkExtent2D drawn() const;
   void set_drawn();
@@ -96,6 +99,7 @@ struct Renderer::State {
 
   std::optional<SectionTracer> section_tracer;  // of a plan with section planes
   std::unique_ptr<CompiledFrame> compiled;      // absent until it is needed: see frame_plan()
+  std::unique_ptr<CompiledFrame> discarded;     // the one before, until another one is made
   bool new_plan = false;                        // no frame has begun with it
 
   std::deque<Begun> begun;  // those that are not finished, the oldest first

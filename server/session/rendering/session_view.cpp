@@ -48,12 +48,12 @@ SessionView::~SessionView() {
 
 void SessionView::prepare() {
   first_frame_due_ = true;
-  make_renderer();
+  make_renderer(state_of_new_renderer());
   publish_buffers();
 }
 
 bool SessionView::awake() const {
-  return renderer_ || wake_->is_notified() || needed();
+  return preparing_.valid() || renderer_ || wake_->is_notified() || needed();
 }
 
 /// Whether the renderer must stay: for viewers, for what is rendered without them, or for the
@@ -67,13 +67,21 @@ bool SessionView::watched() const {
   return !readers_.empty() || session_->viewers().has_active_viewer();
 }
 
-void SessionView::make_renderer() {
-  renderer_ = std::make_unique<render::Renderer>(engine_);
+void SessionView::make_renderer(const RenderState& state) {
+  renderer_ = std::make_unique<render::Renderer>(engine_, state.resources);
   renderer_->keep_buffers(false);
+  apply(state.settings);
+}
+
+/// What a new renderer is made with; the rest is taken over with its first frame.
+RenderState SessionView::state_of_new_renderer() {
+  RenderState state = session_->render_state();
+  if (!services_.migration.is_done(state.resources)) state.resources = nullptr;
+  shown_scene_ = state.resources;
   needed_at_ = Clock::now();
   state_ = {};
   shown_parts_.reset();
-  apply(session_->render_state().settings);
+  return state;
 }
 
 void SessionView::apply(const protocol::Settings& settings) {
@@ -96,6 +104,7 @@ void SessionView::release_renderer() {
   newest_stepped_ = false;
   broadcast_.reset();
   state_ = {};
+  shown_scene_.reset();
   shown_parts_.reset();
   session_->viewers().discard_latest();
   log_info({.session = session_->name()}, "images released");
@@ -106,10 +115,7 @@ SessionView::Work SessionView::advance(bool may_draw) {
   wake_->take();
   readers_.collect();
   session_->viewers().announce_due_frames();
-  if (!renderer_) {
-    if (!needed()) return Work::none;
-    make_renderer();
-  }
+  if (!renderer_ && !needed()) return Work::none;
   if (watched()) session_->mark_used();
   if (needed()) {
     needed_at_ = Clock::now();
@@ -117,8 +123,12 @@ SessionView::Work SessionView::advance(bool may_draw) {
     release_renderer();
     return Work::none;
   }
-  keep_buffers();
   if (begin_migration()) return Work::small;
+  if (!renderer_) {
+    if (begin_making()) return Work::small;
+    make_renderer(state_of_new_renderer());
+  }
+  keep_buffers();
   if (session_->timeline().in_lockstep()) return advance_step(may_draw);
   newest_stepped_ = false;
   adopt_state();
@@ -307,6 +317,12 @@ bool SessionView::is_preparing() {
 bool SessionView::begin_preparing() {
   return renderer_->can_prepare() &&
          prepare_beside([renderer = renderer_.get()] { renderer->prepare(); });
+}
+
+/// Nor for its memory, which takes the driver of a GPU longer than a frame.
+bool SessionView::begin_making() {
+  if (engine_.device().type == protocol::DeviceType::cpu) return false;
+  return prepare_beside([this, state = state_of_new_renderer()] { make_renderer(state); });
 }
 
 /// A copy of a session may be on another device: its scene is uploaded there first.

@@ -93,7 +93,8 @@ class SessionView {
   bool needed() const;
   bool watched() const;
   bool refines() const;
-  void make_renderer();
+  RenderState state_of_new_renderer();
+  void make_renderer(const RenderState& state);
   void apply(const protocol::Settings& settings);
   void publish_buffers();
   void adopt_state();
@@ -113,6 +114,7 @@ class SessionView {
   ReadableFrame readable_frame(bool lockstep);
   Work advance_step(bool may_draw);
   bool is_preparing();
+  bool begin_making();
   bool begin_preparing();
   bool begin_migration();
   bool prepare_beside(std::function<void()> task);
@@ -150,8 +152,9 @@ class SessionView {
   bool first_frame_due_ = false;  // rendered without viewers
 
   RenderState state_;
-  ShownParts shown_parts_;                 // by the renderer
-  double shown_moment_ = 0.0;              // of the clip, seconds
+  std::shared_ptr<const render::SceneResources> shown_scene_;  // by the renderer
+  ShownParts shown_parts_;                                     // likewise
+  double shown_moment_ = 0.0;                                  // of the clip, seconds
   std::optional<double> prepared_moment_;  // of the clip, for the next frame; seconds
   Clock::time_point camera_moved_at_;
   float draw_scale_ = 1.0f;            // of the renderer

@@ -33,8 +33,9 @@ void SessionView::adopt(RenderState next) {
     session_->migrate(migration);
     state_ = session_->render_state();
   }
-  if (state_.resources != before.resources) {
+  if (state_.resources != shown_scene_) {
     renderer_->set_scene(state_.resources);
+    shown_scene_ = state_.resources;
     shown_parts_.reset();
   }
   adopt_edits(before);
