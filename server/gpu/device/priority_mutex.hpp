@@ -6,8 +6,8 @@
 
 namespace heliograph::gpu {
 
-/// A mutex for two kinds of work: whoever asks for it with lock_first() waits at most for the one
-/// that holds it, whoever asks with lock_after() for all of the first kind, too.
+/// A mutex for two kinds of work: lock_first() waits at most for the one that holds it,
+/// lock_after() for all that wait in lock_first(), too.
 class PriorityMutex {
  public:
   std::unique_lock<std::mutex> lock_first() {
