@@ -93,6 +93,10 @@ class Renderer {
   bool can_prepare() const;
   /// Makes them, on any thread, beside other renderers, while nothing else of this one is called.
   void prepare();
+  /// Whether it still has the images that a change has discarded: on GPUs until the next are made.
+  /// free_discarded() frees them now, on any thread, like prepare().
+  bool has_discarded() const;
+  void free_discarded();
 
   /// False until a frame has begun with the programs and images that the next one is made with: the
   /// first one takes longer.

@@ -180,6 +180,14 @@ void Renderer::prepare() {
   state_->frame_plan();
 }
 
+bool Renderer::has_discarded() const {
+  return state_->discarded != nullptr;
+}
+
+void Renderer::free_discarded() {
+  state_->discarded.reset();
+}
+
 bool Renderer::has_begun() const {
   return state_->compiled && !state_->new_plan;
 }

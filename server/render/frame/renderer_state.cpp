@@ -36,7 +36,11 @@ bool Renderer::State::reference_takes_over() const {
 
 /// Changes of size, scene and settings that follow each other cost one plan together.
 void Renderer::State::discard_frame_plan() {
-  if (compiled) discarded = std::move(compiled);
+  if (parts.device.is_cpu()) {
+    compiled.reset();
+  } else if (compiled) {
+    discarded = std::move(compiled);
+  }
   has_buffers = false;
   has_previous = false;
   sample_index = 0;

@@ -40,7 +40,7 @@ struct Renderer::State {
     std::uint32_t samples = 0;  // with it
   };
 
-  /// Its memory is freed before another plan is made.
+  /// A GPU's driver takes long to free its memory, which comes before another plan is made.
   void discard_frame_plan();
   /// At once: what it refers to is replaced.
   void free_frame_plan();

@@ -240,6 +240,7 @@ void SceneResources::upload_tables(const gpu::Device& device, bool host_kernels,
   write_lights(rest_tables.lights, lights, scene->bounds);
   rest_tables.alpha_heap =
       upload(device, "alpha masks", scene->alpha_heap, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+  rest_tables.alpha_heap.texel_view(VK_FORMAT_R32_UINT);  // before other threads share it
 }
 
 std::shared_ptr<const SceneResources::Geometry> SceneResources::upload_geometry(

@@ -124,6 +124,7 @@ TextureHeap TextureHeapWriter::finish() {
     texels_ = gpu::upload_buffer(device_, "texture heap", std::as_bytes(std::span(gathered_)),
                                  texel_usage);
   }
+  texels_.texel_view(VK_FORMAT_R32_UINT);  // before other threads share it
   return {std::move(texels_),
           gpu::upload_buffer(device_, "textures", std::as_bytes(std::span(plan_.textures)),
                              VK_BUFFER_USAGE_STORAGE_BUFFER_BIT)};

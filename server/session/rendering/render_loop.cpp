@@ -155,9 +155,8 @@ void RenderLoop::run() {
 }
 
 void RenderLoop::advance_or_wait() {
-  remove_closed();
+  const Views views = remove_closed();
   if (loss_reported_.exchange(false) && device_ready_) on_device_lost("outside of rendering");
-  const Views views = open_views();
   if (!device_ready_ && !recover_device(views)) return;
   if (advance_next(views) || finish_a_frame(true) || !device_ready_) return;
   auto due = next_due(views);
@@ -172,10 +171,13 @@ RenderLoop::Views RenderLoop::open_views() {
   return views_;
 }
 
-void RenderLoop::remove_closed() {
+/// @returns those that are open: a view is gone, or among them when the device is recreated
+RenderLoop::Views RenderLoop::remove_closed() {
+  Views open;
   Views closed;
   {
     const std::lock_guard lock(mutex_);
+    open = views_;
     closed.swap(closed_);
   }
   for (const auto& view : closed) {
@@ -183,6 +185,7 @@ void RenderLoop::remove_closed() {
     view->refuse_captures();
     turns_.remove(view.get());
   }
+  return open;
 }
 
 /// Does the short work of all sessions first, so that it does not wait for the frame of another

@@ -79,7 +79,7 @@ class RenderLoop {
   void run();
   void advance_or_wait();
   Views open_views();
-  void remove_closed();
+  Views remove_closed();
   bool advance_next(const Views& views);
   bool draw_in_turn(const std::shared_ptr<SessionView>& view);
   bool waits_for_others_in_flight(TurnKind kind) const;

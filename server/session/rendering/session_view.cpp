@@ -97,6 +97,7 @@ void SessionView::publish_buffers() {
 void SessionView::release_renderer() {
   if (preparing_.valid()) preparing_.wait();
   preparing_ = {};
+  shown_scene_.reset();
   if (!renderer_) return;
   begun_.clear();
   renderer_.reset();
@@ -104,7 +105,6 @@ void SessionView::release_renderer() {
   newest_stepped_ = false;
   broadcast_.reset();
   state_ = {};
-  shown_scene_.reset();
   shown_parts_.reset();
   session_->viewers().discard_latest();
   log_info({.session = session_->name()}, "images released");
@@ -137,7 +137,7 @@ SessionView::Work SessionView::advance(bool may_draw) {
   if (readers_.answer_captures(readable_frame(false))) return Work::small;
   if (next_view_state(view_inputs()) == ViewState::final) broadcast_.send_final();
   if (broadcast_.pump()) return Work::small;
-  if (!frame_due()) return Work::none;
+  if (!frame_due()) return begin_freeing() ? Work::small : Work::none;
   // What a clip shows or hides has to be prepared. A frame comes of that before another moment.
   const bool switches_nodes = state_.animation.playing && clip_switches_nodes();
   if (switches_nodes && !prepared_moment_) adopt_moment();
@@ -323,6 +323,12 @@ bool SessionView::begin_preparing() {
 bool SessionView::begin_making() {
   if (engine_.device().type == protocol::DeviceType::cpu) return false;
   return prepare_beside([this, state = state_of_new_renderer()] { make_renderer(state); });
+}
+
+/// What another frame would free first.
+bool SessionView::begin_freeing() {
+  return renderer_->has_discarded() &&
+         prepare_beside([renderer = renderer_.get()] { renderer->free_discarded(); });
 }
 
 /// A copy of a session may be on another device: its scene is uploaded there first.

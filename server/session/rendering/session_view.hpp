@@ -116,6 +116,7 @@ class SessionView {
   bool is_preparing();
   bool begin_making();
   bool begin_preparing();
+  bool begin_freeing();
   bool begin_migration();
   bool prepare_beside(std::function<void()> task);
   void begin_next_frame();
