@@ -21,13 +21,19 @@ using protocol::FileFormat;
 
 constexpr int animation_quality = 80;
 
-/// The name of a file that is not complete yet, beside it. Devices and pipes have no other.
+/// The name of a file that is not complete yet, beside it.
+fs::path partial_name(fs::path file) {
+  file += ".part";
+  return file;
+}
+
+/// A file that gets its name when it is complete. Devices and pipes have no other.
 class PartialFile {
  public:
   explicit PartialFile(fs::path file) : file_(std::move(file)), name_(file_) {
     std::error_code ignored;
     const bool special = fs::exists(file_, ignored) && !fs::is_regular_file(file_, ignored);
-    if (!special) name_ += ".part";
+    if (!special) name_ = partial_name(file_);
   }
   ~PartialFile() {
     std::error_code ignored;
@@ -133,8 +139,11 @@ bool can_write(const fs::path& file) {
   const bool existed = fs::exists(file, ignored);
   if (existed && !fs::is_regular_file(file, ignored)) return !fs::is_directory(file, ignored);
   if (!file.parent_path().empty()) fs::create_directories(file.parent_path(), ignored);
-  const bool opened = std::ofstream(file, std::ios::app).is_open();
-  if (opened && !existed) fs::remove(file, ignored);
+  // A renderer that is killed here must not leave an empty file of that name: resuming would keep
+  // it.
+  const fs::path tried = existed ? file : partial_name(file);
+  const bool opened = std::ofstream(tried, std::ios::app).is_open();
+  if (opened && !existed) fs::remove(tried, ignored);
   return opened;
 }
 
