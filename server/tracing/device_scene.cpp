@@ -72,10 +72,7 @@ DeviceScene::DeviceScene(const gpu::Device& device, const scene::Scene& scene,
                          std::shared_ptr<const MaskTables> masks, const gpu::Buffer& alpha_heap)
     : masks_(std::move(masks)),
       alpha_heap_(alpha_heap),
-      instances_(device, static_cast<std::uint32_t>(scene.instances.size())) {
-  // Created here on the building thread, because plans of several threads share the view.
-  alpha_heap.texel_view(VK_FORMAT_R32_UINT);
-}
+      instances_(device, static_cast<std::uint32_t>(scene.instances.size())) {}
 
 void DeviceScene::bind(gpu::FramePlan& plan, gpu::PassBuilder& pass) const {
   pass.read(plan.import(masks_->mask_of_instance))

@@ -57,7 +57,6 @@ class StaticSoftwareStructure : public SoftwareStructure {
         root_(bvh.root),
         flat_(bvh.is_flat) {
     check_texels(device, masks.name(), masks.size() / sizeof(std::uint32_t));
-    masks.texel_view(VK_FORMAT_R32_UINT);
     if (moves) bvh_ = std::make_shared<const Bvh>(std::move(bvh));
   }
 

@@ -5,12 +5,13 @@
 #include <unistd.h>
 
 #include <array>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <set>
 #include <string>
+
+#include "tests/support/temporary_folder.hpp"
 
 namespace heliograph::cli {
 namespace {
@@ -20,16 +21,10 @@ namespace fs = std::filesystem;
 class OutputFiles : public testing::Test {
  protected:
   void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "output_filesXXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
     events_ = inotify_init1(IN_NONBLOCK | IN_CLOEXEC);
     ASSERT_GE(inotify_add_watch(events_, folder_.c_str(), IN_CREATE), 0);
   }
-  void TearDown() override {
-    close(events_);
-    fs::remove_all(folder_);
-  }
+  void TearDown() override { close(events_); }
 
   /// Names of the files that were created in the folder, at any time.
   std::set<std::string> created() const {
@@ -44,7 +39,8 @@ class OutputFiles : public testing::Test {
     return names;
   }
 
-  fs::path folder_;
+  const test::TemporaryFolder temporary_;
+  const fs::path folder_ = temporary_.path();
   int events_ = -1;
 };
 

@@ -6,7 +6,7 @@
 #include <functional>
 #include <future>
 
-#include "temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace heliograph::session {
 namespace {
@@ -69,7 +69,7 @@ TEST(SceneCache, APointerToAnyPartKeepsAScene) {
 }
 
 TEST(SceneCache, DropsASceneWhoseFileChanged) {
-  const test::TemporaryFolder folder;
+  const heliograph::test::TemporaryFolder folder;
   const auto file = folder.write("box.glb", "first");
   SceneCache cache(1000);
   cache.add(key("a"), scene_of(100), {scene::examine_file(file)});
@@ -80,7 +80,7 @@ TEST(SceneCache, DropsASceneWhoseFileChanged) {
 }
 
 TEST(SceneCache, FreesASceneWhoseFileIsGoneWhenItIsNotShown) {
-  const test::TemporaryFolder folder;
+  const heliograph::test::TemporaryFolder folder;
   const auto file = folder.write("box.glb");
   SceneCache cache(1000);
   std::optional<LoadedScene> shown =
@@ -127,7 +127,7 @@ TEST(SceneCache, HasASceneOncePerDeviceWithTheHostsPartOnce) {
 }
 
 TEST(SceneCache, FindsNoSceneElsewhereWhoseFileChanged) {
-  const test::TemporaryFolder folder;
+  const heliograph::test::TemporaryFolder folder;
   const auto file = folder.write("box.glb", "first");
   SceneCache cache(1000);
   cache.add(key("a"), scene_of(100), {scene::examine_file(file)});
@@ -167,7 +167,7 @@ bool is_usable_during(SceneCache& cache, const std::vector<scene::SourceFile>& s
 }
 
 TEST(SceneCache, FreesScenesWithoutItsLock) {
-  const test::TemporaryFolder folder;
+  const heliograph::test::TemporaryFolder folder;
   const std::vector sources{scene::examine_file(folder.write("box.glb", "first"))};
   SceneCache cache(0);
   EXPECT_TRUE(is_usable_during(cache, {}, [&] { cache.trim(); }));

@@ -6,12 +6,12 @@
 
 #include "scene/studio.hpp"
 #include "session/library/environment_source.hpp"
-#include "temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace heliograph::session {
 namespace {
 
-using test::TemporaryFolder;
+using heliograph::test::TemporaryFolder;
 
 std::vector<std::string> names(const SceneCatalogue& catalogue) {
   std::vector<std::string> result;

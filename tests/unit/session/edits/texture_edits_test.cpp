@@ -6,7 +6,7 @@
 
 #include "scene/gltf/materials/materials.hpp"
 #include "session/session.hpp"
-#include "tests/unit/session/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace heliograph::session {
 namespace {
@@ -43,7 +43,7 @@ class ImageCatalogue {
   SceneCatalogue get() const { return SceneCatalogue({folder_.path()}); }
 
  private:
-  test::TemporaryFolder folder_;
+  heliograph::test::TemporaryFolder folder_;
 };
 
 TEST(TextureEdits, TexturesOfTheFileAreListedWithTheirSize) {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/session/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace heliograph::session {
 namespace {
@@ -26,7 +26,7 @@ class SceneThumbnailsTest : public testing::TestWithParam<bool> {
   bool has_image() { return static_cast<bool>(thumbnails_.get("box")); }
   fs::path image_file() const { return thumbnails_.file_of(*catalogue_.find("box")); }
 
-  test::TemporaryFolder folder_;
+  heliograph::test::TemporaryFolder folder_;
   fs::path box_;
   SceneCatalogue catalogue_{{folder_.path() / "scenes"}};
   SceneThumbnails::Rendered rendered_;

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/unit/session/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace heliograph::session {
 namespace {
@@ -14,7 +14,7 @@ class UploadStoreTest : public testing::Test {
  protected:
   bool has(const std::string& file) const { return fs::exists(folder_.path() / file); }
 
-  test::TemporaryFolder folder_;
+  heliograph::test::TemporaryFolder folder_;
   UploadStore store_{{.folder = folder_.path(), .max_bytes = 100, .quota = 100}};
 };
 

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace heliograph::session::test {
+namespace heliograph::test {
 
 /// A folder of its own for one test, gone afterwards.
 class TemporaryFolder {
@@ -33,4 +33,4 @@ class TemporaryFolder {
   std::filesystem::path path_;
 };
 
-}  // namespace heliograph::session::test
+}  // namespace heliograph::test
