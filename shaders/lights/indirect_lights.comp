@@ -1,12 +1,13 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 16, local_size_y = 16) in;
 // A shadow ray toward a point of an emissive triangle for every pixel that has gathered indirect
 // light, with the light that it adds.
 #include "lib/frame.glsl"
 #include "lib/lighting/two_sided_light.glsl"
 #include "lib/math/octahedral.glsl"
 #include "lib/math/random.glsl"
+#include "lib/rays/gathered_pixels.glsl"
 #include "lib/rays/ray_stream.glsl"
 #include "lib/math/geometry.glsl"
 #include "shared/emissive.h"
@@ -32,12 +33,19 @@ SideShares shares_at(ivec2 pixel) {
   return side_shares(m);
 }
 
+bool has_gathered(ivec2 pixel) {
+  if (outside_frame(pixel)) return false;
+  return imageLoad(motion, pixel).w > 0.0 && imageLoad(radiance, pixel).w >= 0.0;
+}
+
 void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  ivec2 own = ivec2(gl_GlobalInvocationID.xy);
+  gather_pixel(has_gathered(own), own);
   bool requested = false;
   Ray ray;
-  float view_z = outside_frame(pixel) ? 0.0 : imageLoad(motion, pixel).w;
-  if (view_z > 0.0 && imageLoad(radiance, pixel).w >= 0.0) {
+  if (has_gathered_pixel()) {
+    ivec2 pixel = gathered_pixel();
+    float view_z = imageLoad(motion, pixel).w;
     vec4 encoded = imageLoad(normals, pixel);
     vec3 geometric = octahedral_decode(encoded.zw);
     vec3 position = world_position(pixel, view_z);

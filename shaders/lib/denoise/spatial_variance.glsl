@@ -7,6 +7,7 @@
 #include "lib/denoise/guide.glsl"
 #include "lib/frame.glsl"
 #include "lib/denoise/reprojection.glsl"
+#include "lib/rays/gathered_pixels.glsl"
 #include "shared/denoise.h"
 
 /// What the next frame goes on from.
@@ -15,7 +16,7 @@ void keep(ivec2 pixel, vec4 value);
 const float enough_neighbours = 8.0;  // the pixel itself counts as one
 const float nearby_depth = 0.02;      // of the distance
 
-layout(local_size_x = 8, local_size_y = 8) in;
+layout(local_size_x = 16, local_size_y = 16) in;
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D guide;
 layout(set = 1, binding = 1, rg32f) readonly uniform image2D depth_slope;
 layout(set = 1, binding = 2, MOMENTS_FORMAT) readonly uniform image2D moments;
@@ -23,16 +24,21 @@ layout(set = 1, binding = 3, rgba16f) readonly uniform image2D history;
 layout(set = 1, binding = 4, rgba32f) uniform image2D signal;
 layout(push_constant) uniform Constants { TemporalConstants constants; };
 
-void main() {
-  ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
-  if (outside_frame(pixel)) return;
-  vec4 guide_p = imageLoad(guide, pixel);
-  Guide here = decode_guide(guide_p);
+const int radius = 3;
+
+bool has_short_history(ivec2 pixel) {
+  if (outside_frame(pixel) || guide_is_background(imageLoad(guide, pixel))) return false;
   vec2 frames = frames_of(imageLoad(history, pixel));
-  bool known = guide_is_background(guide_p) ||
-               min(frames.x, frames.y) >= constants.spatial_variance_frames;
-  // No rows to visit instead of a branch around them: that is what vector hardware can skip.
-  int radius = known ? -1 : 3;
+  return min(frames.x, frames.y) < constants.spatial_variance_frames;
+}
+
+void main() {
+  ivec2 own = ivec2(gl_GlobalInvocationID.xy);
+  gather_pixel(has_short_history(own), own);
+  if (!has_gathered_pixel()) return;
+  ivec2 pixel = gathered_pixel();
+  Guide here = decode_guide(imageLoad(guide, pixel));
+  vec2 frames = frames_of(imageLoad(history, pixel));
   vec2 slope = imageLoad(depth_slope, pixel).xy;
   float curve = enabled(frame_orthographic) ? 0.0 : 1.0 / max(here.view_z, 1e-20);
   float footprint = pixel_footprint(here.view_z);
@@ -61,7 +67,7 @@ void main() {
       loose_total += loose_weight;
     }
   }
-  if (known || total <= 0.0) return;
+  if (total <= 0.0) return;
   float alone = clamp((enough_neighbours - total) / (enough_neighbours - 2.0), 0.0, 1.0);
   sum = mix(sum / total, loose_sum / max(loose_total, 1e-6), alone);
   vec2 longer = max(constants.spatial_variance_frames / max(frames, vec2(1.0)), vec2(1.0));
