@@ -3,15 +3,25 @@
 #define HELIOGRAPH_TEXTURE_HEAP_GLSL
 #include "lib/scene/scene_tables.glsl"
 
-/// A texel's index along one axis of `size` texels, brought back into the image.
+/// A texel's index along one axis of `size` texels, brought back into the image: from as far as a
+/// coordinate is in within_period(), and one texel more on either side.
 int wrapped_texel(int texel, int size, uint mode) {
   if (mode == wrap_clamp) return clamp(texel, 0, size - 1);
-  int period = mode == wrap_mirror ? 2 * size : size;
-  texel -= int(floor(float(texel) / float(period))) * period;
-  // Where the quotient is whole, devices may round it down.
-  if (texel >= period) texel -= period;
-  texel = clamp(texel, 0, period - 1);
-  return texel < size ? texel : period - 1 - texel;
+  if (mode == wrap_mirror) {
+    texel = texel < 0 ? -1 - texel : texel;
+    if (texel >= 2 * size) texel -= 2 * size;
+    return texel < size ? texel : 2 * size - 1 - texel;
+  }
+  if (texel < 0) texel += size;
+  return texel < size ? texel : texel - size;
+}
+
+/// A coordinate without whole repetitions of the image, so that large ones keep their fraction: 0 to
+/// 2 where it is mirrored, to 1 where it repeats, within 4 where it is clamped.
+float within_period(float coordinate, uint mode) {
+  if (mode == wrap_clamp) return clamp(coordinate, -4.0, 4.0);
+  if (mode == wrap_mirror) return clamp(coordinate - 2.0 * floor(0.5 * coordinate), 0.0, 2.0);
+  return clamp(coordinate - floor(coordinate), 0.0, 1.0);
 }
 
 /// IEC 61966-2-1 by a polynomial, within 0.0005: powers would cost more than the texels.
@@ -44,10 +54,7 @@ vec4 sample_level(HeapTexture t, uint first, ivec2 size, vec2 uv, bool nearest) 
 vec4 sample_texture(uint index, vec2 uv, float lod) {
   HeapTexture t = textures[index];
   bool nearest = (t.flags & (lod <= 0.0 ? texture_magnify_nearest : texture_minify_nearest)) != 0u;
-  // Whole repetitions first, so that large coordinates keep their fraction.
-  if (t.wrap_s != wrap_clamp) uv.x -= 2.0 * floor(0.5 * uv.x);
-  if (t.wrap_t != wrap_clamp) uv.y -= 2.0 * floor(0.5 * uv.y);
-  uv = clamp(uv, -4.0, 4.0);
+  uv = vec2(within_period(uv.x, t.wrap_s), within_period(uv.y, t.wrap_t));
   lod = clamp(lod, 0.0, float(t.levels - 1u));
   if ((t.flags & texture_levels_nearest) != 0u) lod = max(ceil(lod + 0.5) - 1.0, 0.0);
 #ifdef TEXTURE_ONE_LEVEL
