@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <span>
 #include <vector>
@@ -11,8 +10,8 @@
 
 namespace heliograph::tracing {
 
-/// Updates a copy of a two-level hierarchy for an animated scene: the trees of deforming meshes are
-/// refitted, the tree over the instances is rebuilt.
+/// The copy of a two-level hierarchy for an animated scene, whose tree over the instances is
+/// rebuilt when they move. DeviceRefit brings the trees of deforming meshes to their vertices.
 class MovingBvh {
  public:
   /// The copy's tables. The device reads them: write-only memory.
@@ -27,22 +26,14 @@ class MovingBvh {
 
   /// Number of records that the tables need, for any placement of the instances.
   std::size_t record_count() const { return rest_->first_placed + 2 * mesh_of_.size(); }
-  bool deforms() const { return !deforming_.empty(); }
   std::uint32_t root() const { return root_; }
 
   /// Fills the tables with the static hierarchy.
   void start(const Tables& tables);
-  /// @throws std::length_error when the instances nest too deeply
+  /// Of the upper level. @throws std::length_error when the instances nest too deeply
   void update(const Movement& movement, const Tables& tables);
 
  private:
-  struct Deforming {
-    std::vector<std::uint32_t> indices;
-    std::vector<shared::BvhTriangle> triangles;  // leaf order
-    std::vector<shared::BvhNode> nodes;
-  };
-
-  void refit(const Movement::Mesh& mesh, const Tables& tables);
   void place(std::span<const glm::mat4> worlds, const Tables& tables);
 
   RTCDevice device_;
@@ -50,7 +41,6 @@ class MovingBvh {
   std::vector<std::uint32_t> mesh_of_;  // by instance
   std::vector<scene::Bounds> bounds_;   // by mesh
   std::vector<glm::mat4> rest_worlds_;
-  std::map<std::uint32_t, Deforming> deforming_;  // by mesh
   std::uint32_t root_ = shared::bvh_no_link;
 };
 

@@ -8,6 +8,7 @@
 #include "shaders/embedded.hpp"
 #include "shaders/shared/ray.h"
 #include "tracing/bvh/bvh.hpp"
+#include "tracing/bvh/device_refit.hpp"
 #include "tracing/bvh/moving_bvh.hpp"
 #include "tracing/embree/embree.hpp"
 #include "tracing/stoppable_tracer.hpp"
@@ -20,6 +21,13 @@ void check_texels(const gpu::Device& device, const std::string& name, std::size_
   if (texels <= most) return;
   throw gpu::GpuError("the scene's " + name + " takes " + std::to_string(texels) +
                       " texels, but the device reads at most " + std::to_string(most));
+}
+
+void check_storage(const gpu::Device& device, const std::string& name, std::size_t bytes) {
+  const std::size_t most = device.limits().maxStorageBufferRange;
+  if (bytes <= most) return;
+  throw gpu::GpuError("the moving scene's " + name + " takes " + std::to_string(bytes) +
+                      " bytes, but shaders of the device write at most " + std::to_string(most));
 }
 
 /// Uploads RGBA32F texels. Creates the view here on the building thread, because plans of several
@@ -80,16 +88,21 @@ class StaticSoftwareStructure : public SoftwareStructure {
 class MovingSoftwareStructure : public SoftwareStructure, public MovingStructure {
  public:
   MovingSoftwareStructure(const gpu::Device& device, RTCDevice embree,
+                          const DeviceRefit::Programs& refit,
                           std::shared_ptr<const StaticSoftwareStructure> rest,
                           const scene::Scene& scene)
       : rest_(std::move(rest)), bvh_(embree, rest_->bvh(), scene) {
     records_ = writable_texels(device, "bvh.moving_records",
                                bvh_.record_count() * sizeof(shared::BvhNode));
-    if (bvh_.deforms()) {
+    if (!scene.deformations.empty()) {
       triangles_ =
           writable_texels(device, "bvh.moving_triangles", rest_->tables().triangles.size());
     }
     bvh_.start(mapped());
+    if (triangles_) {
+      refit_.emplace(device, refit, *rest_->bvh(), scene,
+                     DeviceRefit::Tables{records_, triangles_});
+    }
   }
 
   SoftwareTables tables() const override {
@@ -97,14 +110,21 @@ class MovingSoftwareStructure : public SoftwareStructure, public MovingStructure
     return {records_, triangles_ ? triangles_ : rest.triangles, rest.alpha_heap};
   }
   std::uint32_t root() const override { return bvh_.root(); }
-  void update(const Movement& movement) override { bvh_.update(movement, mapped()); }
+  void update(const Movement& movement) override {
+    bvh_.update(movement, mapped());
+    if (movement.deformed.empty()) return;
+    for (const Movement::Mesh& mesh : movement.deformed) refit_->move(mesh);
+    refit_->run();
+  }
 
  private:
   static gpu::Buffer writable_texels(const gpu::Device& device, const std::string& name,
                                      std::size_t bytes) {
     check_texels(device, name, bytes / sizeof(glm::vec4));
-    gpu::Buffer buffer(device, name, bytes, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT,
-                       gpu::Memory::upload);
+    check_storage(device, name, bytes);
+    constexpr VkBufferUsageFlags usage =
+        VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    gpu::Buffer buffer(device, name, bytes, usage, gpu::Memory::upload);
     buffer.texel_view(VK_FORMAT_R32G32B32A32_SFLOAT);
     return buffer;
   }
@@ -121,6 +141,7 @@ class MovingSoftwareStructure : public SoftwareStructure, public MovingStructure
   MovingBvh bvh_;
   gpu::Buffer records_;
   gpu::Buffer triangles_;
+  std::optional<DeviceRefit> refit_;  // of scenes with deforming meshes
 };
 
 class SoftwareTracer : public StoppableTracer {
@@ -129,7 +150,8 @@ class SoftwareTracer : public StoppableTracer {
       : device_(device),
         embree_(make_embree_device()),
         closest_(device, shaders::trace_closest),
-        any_(device, shaders::trace_any) {}
+        any_(device, shaders::trace_any),
+        refit_(device) {}
 
   protocol::TracerKind kind() const override { return protocol::TracerKind::software; }
 
@@ -160,7 +182,7 @@ class SoftwareTracer : public StoppableTracer {
                                                 const scene::Scene& scene,
                                                 const SceneTables&) const override {
     return std::make_unique<MovingSoftwareStructure>(
-        device_, embree_.get(),
+        device_, embree_.get(), refit_,
         std::dynamic_pointer_cast<const StaticSoftwareStructure>(std::move(rest)), scene);
   }
 
@@ -206,6 +228,7 @@ class SoftwareTracer : public StoppableTracer {
   EmbreeHandle<RTCDevice> embree_;
   gpu::ComputeProgram closest_;
   gpu::ComputeProgram any_;
+  DeviceRefit::Programs refit_;
 };
 
 }  // namespace
