@@ -71,6 +71,13 @@ std::vector<RTCBuildPrimitive> to_primitives(std::span<const scene::Bounds> boxe
   return primitives;
 }
 
+float half_area(const RTCBounds& box) {
+  const float x = box.upper_x - box.lower_x;
+  const float y = box.upper_y - box.lower_y;
+  const float z = box.upper_z - box.lower_z;
+  return x * y + y * z + z * x;
+}
+
 class Flattener {
  public:
   Flattener(Hierarchy& hierarchy, const LeafWriter& write_leaf)
@@ -81,7 +88,11 @@ class Flattener {
     hierarchy_.depth = std::max(hierarchy_.depth, stacked);
     if (node.count > 0) return write_leaf_({node.items.data(), node.count});
     const auto index = static_cast<std::uint32_t>(hierarchy_.nodes.size());
-    const auto& [left, right] = node.boxes;
+    // The larger box first: rays that nothing orders, those of shadows and from inside both boxes,
+    // meet something there sooner.
+    const std::size_t larger = half_area(node.boxes[1]) > half_area(node.boxes[0]) ? 1 : 0;
+    const RTCBounds& left = node.boxes[larger];
+    const RTCBounds& right = node.boxes[1 - larger];
     hierarchy_.nodes.push_back({{left.lower_x, left.upper_x, left.lower_y, left.upper_y},
                                 {right.lower_x, right.upper_x, right.lower_y, right.upper_y},
                                 {left.lower_z, left.upper_z, right.lower_z, right.upper_z},
@@ -89,11 +100,11 @@ class Flattener {
                                 0,
                                 0,
                                 0});
-    const auto child = [&](int i) {
+    const auto child = [&](std::size_t i) {
       return add(*static_cast<const BuildNode*>(node.children[i]), stacked + 1);
     };
-    const std::uint32_t left_link = child(0);
-    const std::uint32_t right_link = child(1);
+    const std::uint32_t left_link = child(larger);
+    const std::uint32_t right_link = child(1 - larger);
     hierarchy_.nodes[index].left = left_link;
     hierarchy_.nodes[index].right = right_link;
     return node_link(index);

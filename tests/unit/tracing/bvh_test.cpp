@@ -117,6 +117,25 @@ TEST_F(BvhTest, ContainsEveryTriangleOnceWithinItsBoxes) {
   EXPECT_LE(bvh.depth, shared::bvh_stack_size);
 }
 
+float half_area(const Box& box) {
+  const glm::vec3 size = box.high - box.low;
+  return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
+// Shadow rays take the children in this order.
+TEST_F(BvhTest, TheLargerChildComesFirst) {
+  const Bvh bvh = build(two_level_scene(4));
+  std::size_t nodes = 0;
+  for (const BvhMesh& mesh : bvh.meshes) {
+    for (std::size_t i = mesh.first_record; i < mesh.first_record + mesh.nodes; ++i) {
+      const float left = half_area(left_box(bvh.records[i]));
+      EXPECT_GE(left * 1.000001f, half_area(right_box(bvh.records[i])));
+      ++nodes;
+    }
+  }
+  EXPECT_GT(nodes, 100u);
+}
+
 /// Checks that leaves under `link` hold all triangles of instances that rays can hit, at their
 /// places in the world.
 void check_flat(const Bvh& bvh, const scene::Scene& scene) {
