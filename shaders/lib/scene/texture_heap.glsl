@@ -68,12 +68,10 @@ vec4 sample_texture(uint index, vec2 uv, float lod) {
 #ifdef TEXTURE_ONE_LEVEL
   return finer;
 #else
-  // Magnified textures have no level between two.
-  float toward_coarser = lod - float(level);
-  if (toward_coarser == 0.0) return finer;
-  uint coarser_first = first + uint(size.x * size.y);
-  ivec2 coarser_size = max(size >> 1, ivec2(1));
-  return mix(finer, sample_level(t, coarser_first, coarser_size, uv, nearest), toward_coarser);
+  bool last = level + 1u >= t.levels;
+  uint coarser_first = last ? first : first + uint(size.x * size.y);
+  ivec2 coarser_size = last ? size : max(size >> 1, ivec2(1));
+  return mix(finer, sample_level(t, coarser_first, coarser_size, uv, nearest), lod - float(level));
 #endif
 }
 
