@@ -12,6 +12,9 @@ struct RefitTriangle {
   uint corner2;
 };
 
+// The least coordinate of the box of nothing; the greatest is its negative.
+SHARED_CONSTANT float refit_empty = 3e38;
+
 // Invocations of a group that refits boxes.
 SHARED_CONSTANT uint refit_group = 256u;
 

@@ -16,26 +16,27 @@ struct Box {
   vec3 high;
 };
 
-Box box_of_leaf(uint link) {
-  uint texel = (link & bvh_leaf_first_mask) * bvh_texels_per_triangle;
-  uint count = ((link >> bvh_leaf_count_shift) & bvh_leaf_count_mask) + 1u;
-  uint end = texel + count * bvh_texels_per_triangle;
-  Box box = Box(triangles[texel].xyz, triangles[texel].xyz);
-  for (++texel; texel < end; ++texel) {
-    vec3 corner = triangles[texel].xyz;
-    box.low = min(box.low, corner);
-    box.high = max(box.high, corner);
-  }
-  return box;
+// Comparisons, since min() and max() may return what is no number.
+void include(inout Box box, vec3 low, vec3 high) {
+  box.low = mix(box.low, low, lessThan(low, box.low));
+  box.high = mix(box.high, high, greaterThan(high, box.high));
 }
 
 Box box_below(uint link) {
-  if ((link & bvh_leaf_bit) != 0u) return box_of_leaf(link);
+  Box box = Box(vec3(refit_empty), vec3(-refit_empty));
+  if ((link & bvh_leaf_bit) != 0u) {
+    uint texel = (link & bvh_leaf_first_mask) * bvh_texels_per_triangle;
+    uint count = ((link >> bvh_leaf_count_shift) & bvh_leaf_count_mask) + 1u;
+    uint end = texel + count * bvh_texels_per_triangle;
+    for (; texel < end; ++texel) include(box, triangles[texel].xyz, triangles[texel].xyz);
+    return box;
+  }
   uint record = link & bvh_number_mask;
   vec4 left = records[record].left_xy, right = records[record].right_xy;
   vec4 z = records[record].both_z;
-  return Box(vec3(min(left.xz, right.xz), min(z.x, z.z)),
-             vec3(max(left.yw, right.yw), max(z.y, z.w)));
+  include(box, vec3(left.xz, z.x), vec3(left.yw, z.y));
+  include(box, vec3(right.xz, z.z), vec3(right.yw, z.w));
+  return box;
 }
 
 void refit(uint record) {

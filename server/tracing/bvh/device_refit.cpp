@@ -6,6 +6,7 @@
 #include <cstring>
 #include <glm/gtc/type_ptr.hpp>
 #include <string>
+#include <vector>
 
 #include "shaders/embedded.hpp"
 #include "shaders/shared/refit.h"
@@ -76,12 +77,12 @@ DeviceRefit::DeviceRefit(const gpu::Device& device, const Programs& programs, co
     for (const shared::Vertex& vertex : mesh.vertices) lists.positions.push_back(vertex.position);
   }
   triangle_count_ = static_cast<std::uint32_t>(lists.triangles.size());
-  std::vector<std::uint32_t> nodes;
+  std::vector<std::uint32_t> nodes, first_node;
   for (const std::vector<std::uint32_t>& level : lists.levels) {
-    first_node_.push_back(static_cast<std::uint32_t>(nodes.size()));
+    first_node.push_back(static_cast<std::uint32_t>(nodes.size()));
     nodes.insert(nodes.end(), level.begin(), level.end());
   }
-  first_node_.push_back(static_cast<std::uint32_t>(nodes.size()));
+  first_node.push_back(static_cast<std::uint32_t>(nodes.size()));
   const auto positions = std::as_bytes(std::span(lists.positions));
   positions_ = gpu::Buffer(device, "refit positions", std::max<std::size_t>(positions.size(), 16),
                            storage, gpu::Memory::upload);
@@ -91,10 +92,10 @@ DeviceRefit::DeviceRefit(const gpu::Device& device, const Programs& programs, co
   };
   triangles_ = upload("refit triangles", lists.triangles);
   nodes_ = upload("refit nodes", nodes);
-  levels_ = upload("refit levels", first_node_);
+  levels_ = upload("refit levels", first_node);
   const gpu::BufferRef triangles = plan_.import(tables.triangles);
   refit_corners(programs.corners, triangles);
-  refit_boxes(programs.boxes, triangles, plan_.import(tables.records));
+  refit_boxes(programs.boxes, triangles, plan_.import(tables.records), first_node);
   plan_.compile();
 }
 
@@ -109,10 +110,10 @@ void DeviceRefit::refit_corners(const gpu::ComputeProgram& program, gpu::BufferR
 
 /// Wide levels by themselves, those above together in one group.
 void DeviceRefit::refit_boxes(const gpu::ComputeProgram& program, gpu::BufferRef triangles,
-                              gpu::BufferRef records) {
-  const auto levels = static_cast<std::uint32_t>(first_node_.size() - 1);
+                              gpu::BufferRef records, std::span<const std::uint32_t> first_node) {
+  const auto levels = static_cast<std::uint32_t>(first_node.size() - 1);
   const auto nodes_of = [&](std::uint32_t level) {
-    return first_node_[level + 1] - first_node_[level];
+    return first_node[level + 1] - first_node[level];
   };
   for (std::uint32_t first = 0, end; first < levels; first = end) {
     end = nodes_of(first) > shared::refit_group ? first + 1 : levels;

@@ -1,8 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <map>
-#include <vector>
+#include <span>
 
 #include "gpu/frame_plan/frame_plan.hpp"
 #include "tracing/bvh/bvh.hpp"
@@ -38,15 +39,14 @@ class DeviceRefit {
  private:
   void refit_corners(const gpu::ComputeProgram& program, gpu::BufferRef triangles);
   void refit_boxes(const gpu::ComputeProgram& program, gpu::BufferRef triangles,
-                   gpu::BufferRef records);
+                   gpu::BufferRef records, std::span<const std::uint32_t> first_node);
 
   std::map<std::uint32_t, std::size_t> first_position_;  // by mesh that deforms
   std::uint32_t triangle_count_ = 0;
-  std::vector<std::uint32_t> first_node_;  // of each level, in nodes_; then their number
-  gpu::Buffer positions_;                  // three floats for each vertex
-  gpu::Buffer triangles_;                  // shared::RefitTriangle
-  gpu::Buffer nodes_;                      // records, a uint each, by level
-  gpu::Buffer levels_;                     // as first_node_
+  gpu::Buffer positions_;  // three floats for each vertex
+  gpu::Buffer triangles_;  // shared::RefitTriangle
+  gpu::Buffer nodes_;      // records, a uint each, by level
+  gpu::Buffer levels_;     // the first of each level in nodes_, then their number
   gpu::FramePlan plan_;
 };
 

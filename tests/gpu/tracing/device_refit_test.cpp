@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstring>
+#include <limits>
 #include <vector>
 
 #include "tests/gpu/tracing/tracer_rig.hpp"
@@ -131,6 +132,38 @@ TEST_F(DeviceRefitTest, BoxesAreThoseOfTheVertices) {
           std::memcmp(&refitted.rest.records[i], &records_at_rest[i], sizeof(shared::BvhNode)), 0);
     }
   }
+}
+
+// Drivers may take them for the least or the greatest of two.
+TEST_F(DeviceRefitTest, VerticesThatAreNoNumbersCountForNothing) {
+  scene::Scene scene = two_level_scene(10);
+  scene.clips.emplace_back();
+  constexpr std::uint32_t a_sphere = 1;
+  scene.deformations.push_back({.mesh = a_sphere, .shape = 0, .node = 0, .skin = {}});
+  for (const scene::Instance& instance : scene.instances) {
+    scene.clips[0].channels.push_back({.node = instance.node});
+  }
+  RefittedScene refitted(rig_->device, scene);
+  scene::Mesh& mesh = scene.meshes[a_sphere];
+  scene::Bounds expected;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    if (i % 7 == 0) {
+      mesh.vertices[i].position = glm::vec3(std::numeric_limits<float>::quiet_NaN());
+    } else {
+      mesh.vertices[i].position *= 2.0f;
+    }
+  }
+  std::vector<bool> used(mesh.vertices.size());
+  for (const std::uint32_t index : mesh.indices) used[index] = true;
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    if (used[i] && i % 7 != 0) expected.include(mesh.vertices[i].position);
+  }
+  refitted.refit.move({a_sphere, mesh.vertices, {}});
+  refitted.run();
+  const std::uint32_t root = refitted.rest.meshes[a_sphere].root & shared::bvh_number_mask;
+  scene::Bounds found = left_of(refitted.rest.records[root]);
+  found.include(right_of(refitted.rest.records[root]));
+  expect_same(found, expected);
 }
 
 }  // namespace
