@@ -10,6 +10,11 @@
 
 namespace heliograph::tracing {
 
+/// How many records the copy of a hierarchy needs, for any placement of the instances.
+inline std::size_t moving_record_count(const Bvh& rest, std::size_t instances) {
+  return rest.first_placed + 2 * instances;
+}
+
 /// The copy of a two-level hierarchy for an animated scene, whose tree over the instances is
 /// rebuilt when they move. DeviceRefit brings the trees of deforming meshes to their vertices.
 class MovingBvh {
@@ -24,8 +29,7 @@ class MovingBvh {
   /// `scene`: the scene of the static hierarchy. Keeps no reference to it.
   MovingBvh(RTCDevice device, std::shared_ptr<const Bvh> rest, const scene::Scene& scene);
 
-  /// Number of records that the tables need, for any placement of the instances.
-  std::size_t record_count() const { return rest_->first_placed + 2 * mesh_of_.size(); }
+  std::size_t record_count() const { return moving_record_count(*rest_, mesh_of_.size()); }
   std::uint32_t root() const { return root_; }
 
   /// Fills the tables with the static hierarchy.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <optional>
@@ -23,11 +24,23 @@ void check_texels(const gpu::Device& device, const std::string& name, std::size_
                       " texels, but the device reads at most " + std::to_string(most));
 }
 
-void check_storage(const gpu::Device& device, const std::string& name, std::size_t bytes) {
+/// What DeviceRefit binds as storage buffers, of scenes whose meshes deform.
+void check_refit(const gpu::Device& device, const scene::Scene& scene, const Bvh& bvh) {
+  if (scene.deformations.empty()) return;
   const std::size_t most = device.limits().maxStorageBufferRange;
+  const std::size_t records = moving_record_count(bvh, scene.instances.size());
+  std::size_t vertices = 0;
+  for (const scene::Deformation& deformation : scene.deformations) {
+    vertices += scene.meshes[deformation.mesh].vertices.size();
+  }
+  const std::size_t bytes =
+      std::max({records * sizeof(shared::BvhNode), bvh.triangles.size() * sizeof(glm::vec4),
+                vertices * sizeof(glm::vec3)});
   if (bytes <= most) return;
-  throw gpu::GpuError("the moving scene's " + name + " takes " + std::to_string(bytes) +
-                      " bytes, but shaders of the device write at most " + std::to_string(most));
+  throw gpu::GpuError("the hierarchy of a scene with deforming meshes takes " +
+                      std::to_string(bytes >> 20) +
+                      " MiB, but shaders of the device write at most " +
+                      std::to_string(most >> 20) + " MiB of a buffer");
 }
 
 /// Uploads RGBA32F texels. Creates the view here on the building thread, because plans of several
@@ -92,11 +105,13 @@ class MovingSoftwareStructure : public SoftwareStructure, public MovingStructure
                           std::shared_ptr<const StaticSoftwareStructure> rest,
                           const scene::Scene& scene)
       : rest_(std::move(rest)), bvh_(embree, rest_->bvh(), scene) {
+    const VkBufferUsageFlags refitted =
+        scene.deformations.empty() ? 0 : VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
     records_ = writable_texels(device, "bvh.moving_records",
-                               bvh_.record_count() * sizeof(shared::BvhNode));
-    if (!scene.deformations.empty()) {
-      triangles_ =
-          writable_texels(device, "bvh.moving_triangles", rest_->tables().triangles.size());
+                               bvh_.record_count() * sizeof(shared::BvhNode), refitted);
+    if (refitted != 0) {
+      triangles_ = writable_texels(device, "bvh.moving_triangles", rest_->tables().triangles.size(),
+                                   refitted);
     }
     bvh_.start(mapped());
     if (triangles_) {
@@ -119,12 +134,10 @@ class MovingSoftwareStructure : public SoftwareStructure, public MovingStructure
 
  private:
   static gpu::Buffer writable_texels(const gpu::Device& device, const std::string& name,
-                                     std::size_t bytes) {
+                                     std::size_t bytes, VkBufferUsageFlags more) {
     check_texels(device, name, bytes / sizeof(glm::vec4));
-    check_storage(device, name, bytes);
-    constexpr VkBufferUsageFlags usage =
-        VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-    gpu::Buffer buffer(device, name, bytes, usage, gpu::Memory::upload);
+    gpu::Buffer buffer(device, name, bytes, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | more,
+                       gpu::Memory::upload);
     buffer.texel_view(VK_FORMAT_R32G32B32A32_SFLOAT);
     return buffer;
   }
@@ -158,24 +171,20 @@ class SoftwareTracer : public StoppableTracer {
   std::shared_ptr<const AccelerationStructure> build_unless_stopped(
       const scene::Scene& scene, const SceneBuffers& buffers,
       const std::stop_token& stop) const override {
-    return std::make_shared<StaticSoftwareStructure>(device_,
-                                                     build_bvh(embree_.get(), scene, {}, stop),
-                                                     !scene.clips.empty(), buffers.alpha_heap);
+    return hold(scene, build_bvh(embree_.get(), scene, {}, stop), !scene.clips.empty(), buffers);
   }
 
   std::shared_ptr<const AccelerationStructure> build_apart(
       const scene::Scene& scene, const SceneBuffers& buffers) const override {
-    return std::make_shared<StaticSoftwareStructure>(
-        device_, build_bvh(embree_.get(), scene, {.flat = false}), true, buffers.alpha_heap);
+    return hold(scene, build_bvh(embree_.get(), scene, {.flat = false}), true, buffers);
   }
 
   std::shared_ptr<const AccelerationStructure> build_without(
       const std::vector<bool>& hidden, std::shared_ptr<const AccelerationStructure> rest,
       const scene::Scene& scene, const SceneBuffers& buffers) const override {
     const bool flat = dynamic_cast<const StaticSoftwareStructure&>(*rest).flat();
-    return std::make_shared<StaticSoftwareStructure>(
-        device_, build_bvh(embree_.get(), scene, {.flat = flat, .hidden = hidden}),
-        !flat || !scene.clips.empty(), buffers.alpha_heap);
+    return hold(scene, build_bvh(embree_.get(), scene, {.flat = flat, .hidden = hidden}),
+                !flat || !scene.clips.empty(), buffers);
   }
 
   std::unique_ptr<MovingStructure> build_moving(std::shared_ptr<const AccelerationStructure> rest,
@@ -203,6 +212,13 @@ class SoftwareTracer : public StoppableTracer {
   }
 
  private:
+  std::shared_ptr<const AccelerationStructure> hold(const scene::Scene& scene, Bvh bvh, bool moves,
+                                                    const SceneBuffers& buffers) const {
+    if (moves) check_refit(device_, scene, bvh);
+    return std::make_shared<StaticSoftwareStructure>(device_, std::move(bvh), moves,
+                                                     buffers.alpha_heap);
+  }
+
   static WalkedHierarchy walked_bvh(const AccelerationStructure& structure) {
     const auto& bvh = dynamic_cast<const SoftwareStructure&>(structure);
     const SoftwareTables tables = bvh.tables();

@@ -3,17 +3,19 @@
 #define HELIOGRAPH_TEXTURE_HEAP_GLSL
 #include "lib/scene/scene_tables.glsl"
 
-/// A texel's index along one axis of `size` texels, brought back into the image: from as far as a
+/// A texel's index along one axis of `size` texels, brought back into the image from as far as a
 /// coordinate is in within_period(), and one texel more on either side.
 int wrapped_texel(int texel, int size, uint mode) {
-  if (mode == wrap_clamp) return clamp(texel, 0, size - 1);
   if (mode == wrap_mirror) {
     texel = texel < 0 ? -1 - texel : texel;
     if (texel >= 2 * size) texel -= 2 * size;
-    return texel < size ? texel : 2 * size - 1 - texel;
+    texel = texel < size ? texel : 2 * size - 1 - texel;
+  } else if (mode != wrap_clamp) {
+    if (texel < 0) texel += size;
+    texel = texel < size ? texel : texel - size;
   }
-  if (texel < 0) texel += size;
-  return texel < size ? texel : texel - size;
+  // Of one texel, the one beyond; of a coordinate that is no number, whatever it became.
+  return clamp(texel, 0, size - 1);
 }
 
 /// A coordinate without whole repetitions of the image, so that large ones keep their fraction: 0 to

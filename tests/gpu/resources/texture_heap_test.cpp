@@ -119,6 +119,32 @@ TEST_P(TextureHeap, MatchesHardwareSampler) {
   }
 }
 
+// What lies beyond an image is another one.
+TEST(TextureHeapEdges, ReadsNoTexelOutsideTheImage) {
+  using scene::Filter;
+  scene::Scene scene = *SceneBuilder().build();
+  scene.images = {noise(1, 1, false), noise(7, 5, false)};
+  const float inside = float(scene.images[0].pixels[0]) / 255.0f;
+  for (const auto wrap : {shared::wrap_repeat, shared::wrap_mirror, shared::wrap_clamp}) {
+    for (const auto filter : {Filter::nearest, Filter::linear}) {
+      scene.textures.push_back({0, {wrap, wrap, filter, filter, true, filter}});
+    }
+  }
+  const FrameRig rig(std::make_shared<const scene::Scene>(scene), look({0, 0, 3}, {0, 0, 0}));
+  const ShaderFunctions heap(shaders::sample_texture, &rig);
+  std::vector<ShaderInput> inputs;
+  for (const float u : {-1e-9f, -0.0f, 0.0f, 0.5f, 0.99999994f, 1.0f, 1.0000001f, -1.0f, 2.0f,
+                        -2.0f, 1e9f, -1e9f, 3e38f, -3e38f}) {
+    for (const float v : {-1e-9f, 0.25f, 1.0f, 2.0f}) inputs.push_back({.a = {u, v, 0.0f, 0.0f}});
+  }
+  for (std::uint32_t texture = 0; texture < scene.textures.size(); ++texture) {
+    const auto got = heap.call(texture, inputs);
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      EXPECT_NEAR(got[i].x.x, inside, 1e-3f) << texture << " at " << inputs[i].a.x;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Encodings, TextureHeap, testing::Bool());
 
 TEST(PackTextures, ImagesOfTheSameFileShareTexels) {
