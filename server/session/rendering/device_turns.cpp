@@ -55,24 +55,43 @@ std::optional<Clock::time_point> DeviceTurns::hold_back(const Contender& contend
   return std::max(until, among_refining_.hold_back(contender.view, now));
 }
 
-void DeviceTurns::charge(const Contender& contender, Clock::time_point begin,
-                         Clock::time_point end) {
-  Clock::time_point charged = end;
+DeviceTurns::Frame DeviceTurns::begin(Clock::time_point now) {
+  pass_time(now);
+  ++frames_;
+  return {.begun = now, .used_before = used_};
+}
+
+void DeviceTurns::finish(const Contender& contender, const Frame& frame, Clock::time_point now) {
+  drop(now);
+  charge(contender, frame.begun, now, used_ - frame.used_before);
+}
+
+void DeviceTurns::drop(Clock::time_point now) {
+  pass_time(now);
+  --frames_;
+}
+
+void DeviceTurns::pass_time(Clock::time_point now) {
+  if (frames_ > 0) used_ += (now - used_until_) / frames_;
+  used_until_ = now;
+}
+
+void DeviceTurns::charge(const Contender& contender, Clock::time_point begin, Clock::time_point end,
+                         FairShare::Duration used) {
   switch (contender.kind) {
     case TurnKind::moving: {
-      const FairShare::Duration taken = end - begin;
-      moving_frame_ += (taken - moving_frame_) / (moving_frame_ == FairShare::Duration(0) ? 1 : 4);
+      moving_frame_ += (used - moving_frame_) / (moving_frame_ == FairShare::Duration(0) ? 1 : 4);
       break;
     }
     case TurnKind::starting:
-      among_starting_.charge(contender.view, begin, end);
-      if (moving_frame_ > FairShare::Duration(0)) charged = std::min(end, begin + moving_frame_);
+      among_starting_.charge(contender.view, begin, end, used);
+      if (moving_frame_ > FairShare::Duration(0)) used = std::min(used, moving_frame_);
       break;
     case TurnKind::refining:
-      among_refining_.charge(contender.view, begin, end);
+      among_refining_.charge(contender.view, begin, end, used);
       break;
   }
-  shares_.charge(in_shares(contender), begin, charged);
+  shares_.charge(in_shares(contender), begin, end, used);
 }
 
 void DeviceTurns::remove(FairShare::Key view) {

@@ -32,18 +32,35 @@ class DeviceTurns {
   void sort(std::vector<Contender>& contenders) const;
   /// As FairShare::hold_back.
   std::optional<Clock::time_point> hold_back(const Contender& contender, Clock::time_point now);
-  void charge(const Contender& contender, Clock::time_point begin, Clock::time_point end);
+
+  /// That the device works on.
+  struct Frame {
+    Clock::time_point begun{};
+    FairShare::Duration used_before{};  // DeviceTurns::used_
+  };
+  /// Frames that have begun and are not over share the time of the device in equal parts. Charged
+  /// from one end to the next, the first to end of many would pay for all, and its view starve.
+  Frame begin(Clock::time_point now);
+  void finish(const Contender& contender, const Frame& frame, Clock::time_point now);
+  /// A frame is over that no view is charged for.
+  void drop(Clock::time_point now);
   void remove(FairShare::Key view);
 
  private:
   FairShare::Key all_starting() const { return &among_starting_; }
   FairShare::Key all_refining() const { return &among_refining_; }
   FairShare::Key in_shares(const Contender& contender) const;
+  void pass_time(Clock::time_point now);
+  void charge(const Contender& contender, Clock::time_point begin, Clock::time_point end,
+              FairShare::Duration used);
 
   FairShare shares_;  // of each view that moves, of all that start, and of all that refine
   FairShare among_starting_;
   FairShare among_refining_;
   FairShare::Duration moving_frame_{0};  // how long one takes, smoothed; zero: there was none
+  int frames_ = 0;                       // that have begun and are not over
+  FairShare::Duration used_{0};          // of the device, by a frame that goes on and on
+  Clock::time_point used_until_{};       // when that was
 };
 
 }  // namespace heliograph::session

@@ -55,7 +55,7 @@ void FairShare::stop_waiting(Account& account, Clock::time_point now) const {
   account.pause = std::min<Duration>(2 * account.pause, max_wait / 2);
 }
 
-void FairShare::charge(Key key, Clock::time_point begin, Clock::time_point end) {
+void FairShare::charge(Key key, Clock::time_point begin, Clock::time_point end, Duration used) {
   Account paid = account(key);
   virtual_now_ = std::max(virtual_now_, paid.next_start);
   const Duration waited = waited_for(paid, begin);
@@ -68,7 +68,7 @@ void FairShare::charge(Key key, Clock::time_point begin, Clock::time_point end) 
     paid.awaited_since.reset();
   }
   paid.skipped = false;
-  paid.last_work = end - begin;
+  paid.last_work = used;
   if (paid.turn == 0) paid.usual_work = paid.last_work;
   paid.next_start += std::min(paid.last_work, most_usual_frames * paid.usual_work);
   paid.usual_work += (paid.last_work - paid.usual_work) / 4;

@@ -37,8 +37,9 @@ class FairShare {
   /// Until when `key`, which could begin a frame now, has to wait for a view that is before it and
   /// is expected back.
   std::optional<Clock::time_point> hold_back(Key key, Clock::time_point now);
-  /// `key` used the device.
-  void charge(Key key, Clock::time_point begin, Clock::time_point end);
+  /// `key` used the device, for `used` of the time between both: the rest was used by others at the
+  /// same time.
+  void charge(Key key, Clock::time_point begin, Clock::time_point end, Duration used);
   void remove(Key key) { accounts_.erase(key); }
 
  private:

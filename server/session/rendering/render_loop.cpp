@@ -181,7 +181,9 @@ RenderLoop::Views RenderLoop::remove_closed() {
     closed.swap(closed_);
   }
   for (const auto& view : closed) {
-    std::erase_if(in_flight_, [&](const InFlight& frame) { return frame.view == view; });
+    const auto frames =
+        std::erase_if(in_flight_, [&](const InFlight& frame) { return frame.view == view; });
+    for (auto i = frames; i > 0; --i) turns_.drop(Clock::now());
     view->refuse_captures();
     turns_.remove(view.get());
   }
@@ -238,13 +240,16 @@ bool RenderLoop::draw_in_turn(const std::shared_ptr<SessionView>& view) {
   if (view->next_frame_moves()) moved_at_ = start;
   // Nothing may fail between the begin of a frame and its being listed.
   in_flight_.reserve(engine_.frames_at_once() + 1);
+  const DeviceTurns::Frame frame = turns_.begin(start);
   const SessionView::Work work = advance(*view, true);
   // The device goes on with this frame while that of another view is shown.
   while (view->in_flight() && in_flight_.size() >= engine_.frames_at_once()) finish_a_frame(false);
   if (view->in_flight() && device_ready_) {
-    in_flight_.push_back({view, start, contender.kind});
+    in_flight_.push_back({view, frame, contender.kind});
   } else if (work == SessionView::Work::drawing) {
-    frame_finished(*view, std::max(start, device_free_), contender.kind);
+    frame_finished(*view, frame, contender.kind);
+  } else {
+    turns_.drop(Clock::now());
   }
   return work != SessionView::Work::none;
 }
@@ -269,23 +274,25 @@ bool RenderLoop::finish_a_frame(bool alone) {
   in_flight_.erase(next);
   alone = alone && in_flight_.empty();
   SessionView& view = *finished.view;
-  Clock::time_point followed{};
   const auto finish = [&] {
     if (alone && !others_wait_ && view.can_begin_following())
       view.begin_following_frame(device_free_);
-    followed = Clock::now();
     view.finish_frame(device_free_);
   };
   if (attempt(view, finish)) {
-    frame_finished(view, std::max(finished.begun, device_free_), finished.kind);
-    if (view.in_flight()) in_flight_.push_back({finished.view, followed, TurnKind::moving});
+    frame_finished(view, finished.frame, finished.kind);
+    if (view.in_flight())
+      in_flight_.push_back({finished.view, turns_.begin(device_free_), TurnKind::moving});
+  } else {
+    turns_.drop(Clock::now());
   }
   return true;
 }
 
-void RenderLoop::frame_finished(SessionView& view, Clock::time_point begun, TurnKind kind) {
+void RenderLoop::frame_finished(SessionView& view, const DeviceTurns::Frame& frame, TurnKind kind) {
+  const Clock::time_point begun = std::max(frame.begun, device_free_);
   device_free_ = Clock::now();
-  turns_.charge({.view = &view, .kind = kind}, begun, device_free_);
+  turns_.finish({.view = &view, .kind = kind}, frame, device_free_);
   {
     const std::lock_guard lock(mutex_);
     busy_.add(begun, device_free_);
@@ -331,7 +338,7 @@ void RenderLoop::on_new_device(std::function<void()> callback) {
 
 void RenderLoop::on_device_lost(const std::string& why) {
   device_ready_ = false;
-  in_flight_.clear();
+  for (; !in_flight_.empty(); in_flight_.pop_back()) turns_.drop(Clock::now());
   ++device_losses_;
   const Clock::duration pause = retry_backoff_.after_loss(Clock::now());
   retry_at_ = Clock::now() + pause;

@@ -85,7 +85,7 @@ class RenderLoop {
   bool waits_for_others_in_flight(TurnKind kind) const;
   SessionView::Work advance(SessionView& view, bool may_draw);
   bool finish_a_frame(bool alone);
-  void frame_finished(SessionView& view, Clock::time_point begun, TurnKind kind);
+  void frame_finished(SessionView& view, const DeviceTurns::Frame& frame, TurnKind kind);
   /// Runs `work` of a view, whose failure is not that of others. @returns whether it succeeded
   bool attempt(SessionView& view, const std::function<void()>& work);
   std::optional<Clock::time_point> next_due(const Views& views) const;
@@ -123,7 +123,7 @@ class RenderLoop {
   /// A view whose frame the device works on: those of others may begin meanwhile.
   struct InFlight {
     std::shared_ptr<SessionView> view;
-    Clock::time_point begun;
+    DeviceTurns::Frame frame;
     TurnKind kind = TurnKind::moving;
   };
   std::vector<InFlight> in_flight_;  // in the order in which they have begun

@@ -55,12 +55,12 @@ class DeviceTurnsTest : public testing::Test {
   void draw(View& view) {
     const auto waited = std::chrono::duration_cast<Milliseconds>(time_ - view.ready);
     view.longest_wait = std::max(view.longest_wait, waited);
-    const Clock::time_point begin = time_;
+    const DeviceTurns::Frame frame = turns_.begin(time_);
     time_ += view.cost;
     view.worked += view.cost;
     ++view.frames;
     view.ready = time_ + (view.kind == TurnKind::starting ? 1h : view.pause);
-    turns_.charge({.view = &view, .kind = view.kind}, begin, time_);
+    turns_.finish({.view = &view, .kind = view.kind}, frame, time_);
   }
 
   void add_starting(int count) {
@@ -145,12 +145,45 @@ TEST_F(DeviceTurnsTest, FirstFramesAloneWaitForNothing) {
   EXPECT_TRUE(all_have_started());
 }
 
+TEST_F(DeviceTurnsTest, FramesThatOverlapPayEqualParts) {
+  constexpr std::size_t at_once = 8;
+  for (std::size_t i = 0; i < 2 * at_once; ++i) add({.cost = 16ms});
+  for (int round = 0; round < 100; ++round) {
+    std::vector<DeviceTurns::Contender> contenders;
+    for (View& view : views_) contenders.push_back({.view = &view});
+    turns_.sort(contenders);
+    contenders.resize(at_once);
+    std::vector<DeviceTurns::Frame> frames(at_once);
+    for (DeviceTurns::Frame& frame : frames) frame = turns_.begin(time_);
+    time_ += 16ms;
+    for (std::size_t i = 0; i < at_once; ++i) {
+      time_ += 1us;
+      turns_.finish(contenders[i], frames[i], time_);
+      ++static_cast<View*>(const_cast<void*>(contenders[i].view))->frames;
+    }
+  }
+  for (const View& view : views_) EXPECT_EQ(view.frames, 50);
+}
+
+TEST_F(DeviceTurnsTest, AFrameThatWasDroppedSharesNoTime) {
+  View& first = add({.cost = 6ms});
+  View& second = add({.cost = 10ms});
+  turns_.finish({.view = &first}, turns_.begin(time_), time_ + 6ms);
+  turns_.begin(time_ + 6ms);
+  turns_.drop(time_ + 7ms);
+  turns_.finish({.view = &second}, turns_.begin(time_ + 7ms), time_ + 17ms);
+  std::vector<DeviceTurns::Contender> contenders{{.view = &second}, {.view = &first}};
+  turns_.sort(contenders);
+  EXPECT_EQ(contenders.front().view, &first) << "a frame of 10 ms counts as half of one";
+}
+
 TEST_F(DeviceTurnsTest, ARemovedViewHasNoDebt) {
   const int key = 0;
   const int other = 0;
-  turns_.charge({.view = &key, .kind = TurnKind::refining}, time_, time_ + 10s);
+  turns_.finish({.view = &key, .kind = TurnKind::refining}, turns_.begin(time_), time_ + 10s);
   turns_.remove(&key);
-  turns_.charge({.view = &other, .kind = TurnKind::refining}, time_ + 10s, time_ + 11s);
+  turns_.finish({.view = &other, .kind = TurnKind::refining}, turns_.begin(time_ + 10s),
+                time_ + 11s);
   std::vector<DeviceTurns::Contender> contenders{{.view = &other, .kind = TurnKind::refining},
                                                  {.view = &key, .kind = TurnKind::refining}};
   turns_.sort(contenders);

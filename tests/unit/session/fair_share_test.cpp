@@ -57,7 +57,7 @@ class FairShareTest : public testing::Test {
     worker.worked += worker.cost;
     ++worker.pieces;
     worker.ready = std::max(time_ + worker.pause, begin + worker.interval);
-    share_.charge(&worker, begin, time_);
+    share_.charge(&worker, begin, time_, worker.cost);
   }
 
   FairShare share_;
@@ -193,9 +193,9 @@ TEST_F(FairShareTest, AViewThatWasAwaitedWhenAllBecameIdlePaysForTheWaitOnly) {
 TEST_F(FairShareTest, ARemovedViewHasNoDebt) {
   const int key = 0;
   const int other = 0;
-  share_.charge(&key, time_, time_ + 10s);
+  share_.charge(&key, time_, time_ + 10s, 10s);
   share_.remove(&key);
-  share_.charge(&other, time_ + 10s, time_ + 11s);
+  share_.charge(&other, time_ + 10s, time_ + 11s, 1s);
   std::vector<FairShare::Key> keys{&other, &key};
   share_.sort(keys);
   EXPECT_EQ(keys.front(), &key);
