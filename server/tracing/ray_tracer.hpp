@@ -96,6 +96,13 @@ struct WalkedHierarchy {
   const gpu::Buffer& triangles;
   const gpu::Buffer& alpha_heap;
   std::function<std::uint32_t()> root;  // of this frame
+  /// Triangles in world space, which never move: a part of `triangles`, shared::BvhTriangle each.
+  struct Flat {
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+    bool all = false;  // there is nothing else that rays can hit
+  };
+  Flat flat = {};
 };
 
 /// Traces rays; other shaders are independent of the tracer, unless they ask for walked().

@@ -15,6 +15,8 @@ SHARED_CONSTANT uint bvh_leaf_bit = 0x80000000u;
 SHARED_CONSTANT uint bvh_leaf_first_mask = 0x03ffffffu;
 SHARED_CONSTANT uint bvh_leaf_count_shift = 26u;
 SHARED_CONSTANT uint bvh_leaf_count_mask = 7u;
+// Beside the number of a triangle: another leaf before has it too, where boxes were split.
+SHARED_CONSTANT uint bvh_again_bit = 0x80000000u;
 // Nothing: the whole of an empty scene, and what lies at the bottom of the stack.
 SHARED_CONSTANT uint bvh_no_link = 0u;
 
@@ -61,7 +63,7 @@ struct BvhMask {
 // Mesh space, or world space in the flat tree.
 struct BvhTriangle {
   vec3 corner0;
-  uint triangle;  // number: index within the mesh
+  uint triangle;  // number: index within the mesh; in the flat tree perhaps with bvh_again_bit
   vec3 corner1;
   uint instance;  // in the flat tree, number: index among the scene's instances
   vec3 corner2;

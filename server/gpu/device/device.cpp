@@ -111,13 +111,20 @@ void Device::create(const Instance& instance) {
   features.features.independentBlend = VK_TRUE;
   features.features.imageCubeArray = VK_TRUE;
   features.features.shaderStorageImageExtendedFormats = VK_TRUE;
-  VkPhysicalDeviceFeatures supported;
-  vkGetPhysicalDeviceFeatures(report_.handle, &supported);
+  VkPhysicalDeviceVulkan12Features supported_12{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES};
+  VkPhysicalDeviceFeatures2 all_supported{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2,
+                                          &supported_12};
+  vkGetPhysicalDeviceFeatures2(report_.handle, &all_supported);
+  const VkPhysicalDeviceFeatures& supported = all_supported.features;
   features.features.samplerAnisotropy = supported.samplerAnisotropy;
   features.features.textureCompressionBC = supported.textureCompressionBC;
   samples_bc7_ = supported.textureCompressionBC &&
                  fills_and_filters(report_.handle, VK_FORMAT_BC7_UNORM_BLOCK) &&
                  fills_and_filters(report_.handle, VK_FORMAT_BC7_SRGB_BLOCK);
+  atomics_64_ = supported.shaderInt64 && supported_12.shaderBufferInt64Atomics;
+  features.features.shaderInt64 = atomics_64_;
+  v12.shaderBufferInt64Atomics = atomics_64_;
   features.features.robustBufferAccess = instance.validation() ? supported.robustBufferAccess : 0;
 
   VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features};

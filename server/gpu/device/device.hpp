@@ -46,6 +46,9 @@ class Device {
   /// with filters.
   bool samples_bc7() const { return samples_bc7_; }
 
+  /// Shaders have 64-bit integers, and atomic operations on those of buffers.
+  bool atomics_64() const { return atomics_64_; }
+
   /// Index of a memory type among `allowed` with `needed`, preferring one that has `preferred` too.
   std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags needed,
                             VkMemoryPropertyFlags preferred) const;
@@ -89,6 +92,7 @@ class Device {
   std::filesystem::path cache_file_;
   bool labels_ = false;
   bool samples_bc7_ = false;
+  bool atomics_64_ = false;
   mutable ProgramRegistry programs_;
 };
 

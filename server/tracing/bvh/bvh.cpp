@@ -117,9 +117,14 @@ TriangleTree build_flat(RTCDevice device, const std::vector<shared::BvhTriangle>
   boxes.reserve(triangles.size());
   for (const auto& t : triangles) boxes.push_back(triangle_box({t.corner0, t.corner1, t.corner2}));
   result.triangles.reserve(boxes.size() + boxes.size() / 2);
+  std::vector<bool> written(triangles.size());
   const auto write_leaf = [&](std::span<const std::uint32_t> items) {
     const std::uint32_t link = leaf_link(result.triangles.size(), items.size());
-    for (const std::uint32_t item : items) result.triangles.push_back(triangles[item]);
+    for (const std::uint32_t item : items) {
+      result.triangles.push_back(triangles[item]);
+      if (written[item]) result.triangles.back().triangle |= shared::bvh_again_bit;
+      written[item] = true;
+    }
     return link;
   };
   const auto split = [&](std::uint32_t item, const scene::Bounds& box, int axis, float at) {

@@ -67,7 +67,17 @@ class SoftwareStructure : public virtual AccelerationStructure {
  public:
   virtual SoftwareTables tables() const = 0;
   virtual std::uint32_t root() const = 0;
+  virtual WalkedHierarchy::Flat flat_triangles() const = 0;
 };
+
+WalkedHierarchy::Flat flat_triangles_of(const Bvh& bvh) {
+  // In whatever pose, its record is the only one.
+  std::size_t others = 0;
+  for (std::size_t i = 0; i < bvh.flat.size(); ++i) others += !bvh.flat[i] && !bvh.hidden[i];
+  return {.first = static_cast<std::uint32_t>(bvh.flat_tree.first_triangle),
+          .count = static_cast<std::uint32_t>(bvh.flat_tree.triangles),
+          .all = others == 0};
+}
 
 class StaticSoftwareStructure : public SoftwareStructure {
  public:
@@ -76,13 +86,15 @@ class StaticSoftwareStructure : public SoftwareStructure {
         triangles_(upload_texels(device, "bvh.triangles", bvh.triangles)),
         alpha_heap_(masks),
         root_(bvh.root),
-        flat_(bvh.is_flat) {
+        flat_(bvh.is_flat),
+        flat_triangles_(flat_triangles_of(bvh)) {
     check_texels(device, masks.name(), masks.size() / sizeof(std::uint32_t));
     if (moves) bvh_ = std::make_shared<const Bvh>(std::move(bvh));
   }
 
   SoftwareTables tables() const override { return {records_, triangles_, alpha_heap_}; }
   std::uint32_t root() const override { return root_; }
+  WalkedHierarchy::Flat flat_triangles() const override { return flat_triangles_; }
   std::uint64_t bytes() const override { return records_.size() + triangles_.size(); }
   /// Whether what no clip moves is one tree.
   bool flat() const { return flat_; }
@@ -95,6 +107,7 @@ class StaticSoftwareStructure : public SoftwareStructure {
   const gpu::Buffer& alpha_heap_;
   std::uint32_t root_;
   bool flat_;
+  WalkedHierarchy::Flat flat_triangles_;
   std::shared_ptr<const Bvh> bvh_;
 };
 
@@ -125,6 +138,7 @@ class MovingSoftwareStructure : public SoftwareStructure, public MovingStructure
     return {records_, triangles_ ? triangles_ : rest.triangles, rest.alpha_heap};
   }
   std::uint32_t root() const override { return bvh_.root(); }
+  WalkedHierarchy::Flat flat_triangles() const override { return rest_->flat_triangles(); }
   void update(const Movement& movement) override {
     bvh_.update(movement, mapped());
     if (movement.deformed.empty()) return;
@@ -222,7 +236,8 @@ class SoftwareTracer : public StoppableTracer {
   static WalkedHierarchy walked_bvh(const AccelerationStructure& structure) {
     const auto& bvh = dynamic_cast<const SoftwareStructure&>(structure);
     const SoftwareTables tables = bvh.tables();
-    return {tables.records, tables.triangles, tables.alpha_heap, [&bvh] { return bvh.root(); }};
+    return {tables.records, tables.triangles, tables.alpha_heap, [&bvh] { return bvh.root(); },
+            bvh.flat_triangles()};
   }
 
   static void add_pass(gpu::FramePlan& plan, const std::string& name,

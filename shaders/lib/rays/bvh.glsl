@@ -183,10 +183,10 @@ Line into_mesh(uint record, Line world) {
   return make_line(vec4(world.origin, 1.0) * rows, vec4(world.direction, 0.0) * rows);
 }
 
-// The closest hit, or any if ANY_HIT; hit_none where there is none. `root`: of the hierarchy;
-// `stream_blending`: RayCount::blending of the ray's stream.
-Hit trace(Ray ray, uint root, uint stream_blending) {
-  Hit hit = Hit(ray.t_max, hit_none, 0u, 0.0, 0.0, 0u, 0u, 0u);
+Hit no_hit(Ray ray) { return Hit(ray.t_max, hit_none, 0u, 0.0, 0.0, 0u, 0u, 0u); }
+
+// `hit`, or what is closer to the ray's origin. `without_flat`: the flat tree is left out.
+Hit trace_beside(Ray ray, uint root, uint stream_blending, bool without_flat, Hit hit) {
   if (!(ray.t_min < ray.t_max)) return hit;
   blending = ray_blending(ray, stream_blending);
   const Line world = make_line(ray.origin, ray.direction);
@@ -198,6 +198,10 @@ Hit trace(Ray ray, uint root, uint stream_blending) {
     if (instance_link == bvh_no_link) return hit;
     const uint record = instance_link & bvh_leaf_first_mask;
     const uvec4 placed = record_bits(record, 3u);  // root, instance, mask, flat_tree
+    if (without_flat && (placed.w & bvh_number_mask) != 0u) {
+      instance_link = pop();
+      continue;
+    }
     const Line line = into_mesh(record, world);
     push(bvh_no_link);
     uint link = placed.x;
@@ -209,6 +213,12 @@ Hit trace(Ray ray, uint root, uint stream_blending) {
     }
     instance_link = pop();
   }
+}
+
+// The closest hit, or any if ANY_HIT; hit_none where there is none. `root`: of the hierarchy;
+// `stream_blending`: RayCount::blending of the ray's stream.
+Hit trace(Ray ray, uint root, uint stream_blending) {
+  return trace_beside(ray, root, stream_blending, false, no_hit(ray));
 }
 
 #endif

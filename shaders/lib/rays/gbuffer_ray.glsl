@@ -12,14 +12,16 @@ uint gbuffer_ray_index() {
   return tile * 64u + gl_LocalInvocationIndex;
 }
 
+/// The near plane is what the reversed projection leaves of every point's depth, metres.
+float camera_near_plane() { return (frame.unjittered * vec4(0.0, 0.0, 0.0, 1.0)).z; }
+
 /// Blended surfaces stop it: RayCount::blending of its stream is 0.
 Ray gbuffer_ray(ivec2 pixel) {
   bool orthographic = enabled(frame_orthographic);
   Ray ray;
   ray.origin = orthographic ? world_position(pixel, 0.0) : frame.eye.xyz;
   ray.direction = -to_eye(pixel);
-  // The near plane is what the reversed projection leaves of every point's depth.
-  float near_plane = orthographic ? 0.0 : (frame.unjittered * vec4(0.0, 0.0, 0.0, 1.0)).z;
+  float near_plane = orthographic ? 0.0 : camera_near_plane();
   ray.t_min = near_plane * length(view_position(pixel, 1.0));
   ray.t_max = outside_frame(pixel) ? -1.0 : 1e30;  // of tiles that stick out: an empty interval
   ray.pixel = uint(pixel.x) | uint(pixel.y) << 16u;

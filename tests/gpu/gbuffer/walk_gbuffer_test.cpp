@@ -67,6 +67,13 @@ class RoundsAndWalk {
     return shown / (double{1} * instance.width * instance.height);
   }
 
+  /// Whether camera rays were drawn.
+  bool draws() const {
+    return std::ranges::any_of(rig_.plan().timings(), [](const gpu::PassTiming& timing) {
+      return timing.name == "gbuffer.drawn";
+    });
+  }
+
   /// How many rays went on behind the first surface.
   std::uint64_t passed() const {
     for (const gpu::PassWork& work : rig_.plan().work()) {
@@ -186,6 +193,21 @@ TEST(WalkGBuffer, WorksAtAnySize) {
     both.rig().run();
     both.expect_equal(std::to_string(extent.width) + " x " + std::to_string(extent.height));
   }
+}
+
+TEST(WalkGBuffer, DrawsManyTriangles) {
+  SceneBuilder builder;
+  const auto sphere = builder.add_sphere(0.6f, surface({0.2f, 0.8f, 0.3f}));
+  for (int i = 0; i < 12; ++i) {
+    builder.place(sphere, glm::translate(glm::mat4(1.0f), {i % 4 - 1.5f, i / 4 - 1, -0.3f * i}));
+  }
+  const auto scene = builder.build();
+  RoundsAndWalk both(scene, fitted_camera(*scene, false), {210, 140});
+  both.rig().set_view(moved_a_little(fitted_camera(*scene, false)), 3);
+  both.rig().run();
+  both.expect_equal("spheres");
+  EXPECT_GT(both.covered(), 0.1);
+  EXPECT_EQ(both.draws(), device().atomics_64());
 }
 
 TEST(WalkGBuffer, FollowsAnimatedMeshes) {

@@ -175,6 +175,33 @@ TEST_F(BvhTest, StaticInstancesAreOneTreeInWorldSpace) {
   EXPECT_LE(bvh.depth, shared::bvh_stack_size);
 }
 
+// gbuffer_small.comp draws each triangle once.
+TEST_F(BvhTest, EveryTriangleIsOnceTheFirst) {
+  scene::Scene scene;
+  // Large diagonal quads among small spheres: their boxes are split.
+  const std::uint32_t small = add_mesh(scene, sphere(6), plain_material());
+  const std::uint32_t large = add_mesh(scene, quad(), plain_material());
+  for (int i = 0; i < 125; ++i) {
+    const glm::vec3 at(i % 5 - 2, i / 5 % 5 - 2, i / 25 - 2);
+    place(scene, small, glm::scale(glm::translate(glm::mat4(1.0f), 4.0f * at), glm::vec3(0.5f)));
+  }
+  for (int i = 0; i < 20; ++i) {
+    const glm::vec3 axis(i % 3, 1, i % 2 + 1);
+    const glm::mat4 turned = glm::rotate(glm::mat4(1.0f), 0.7f + static_cast<float>(i), axis);
+    place(scene, large, glm::scale(turned, glm::vec3(10)));
+  }
+  const Bvh bvh = build(scene, {});
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> firsts;
+  const BvhMesh& tree = bvh.flat_tree;
+  for (std::size_t i = tree.first_triangle; i < tree.first_triangle + tree.triangles; ++i) {
+    const shared::BvhTriangle triangle = triangle_at(bvh, i);
+    firsts[{triangle.instance, triangle.triangle & shared::bvh_number_mask}] +=
+        (triangle.triangle & shared::bvh_again_bit) == 0;
+  }
+  EXPECT_GT(tree.triangles, firsts.size()) << "none is split";
+  for (const auto& [triangle, count] : firsts) EXPECT_EQ(count, 1);
+}
+
 TEST_F(BvhTest, LargeCopiesStayInstances) {
   scene::Scene scene;
   const std::uint32_t copied = add_mesh(scene, sphere(8), plain_material());

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "render/passes/formats.hpp"
+#include "render/passes/gbuffer/draw_camera_rays.hpp"
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/section/section.hpp"
@@ -145,7 +146,11 @@ GBuffer walk_gbuffer(gpu::FramePlan& plan, const FrameInputs& in,
                      const tracing::WalkedHierarchy& hierarchy) {
   const GBuffer gbuffer = declare_gbuffer(plan, in.moving.features_without_emission());
   const Walk walk = declare_walk(plan, in, hierarchy);
-  trace_first(plan, in, walk, hierarchy);
+  if (draws_camera_rays(plan, in, hierarchy)) {
+    draw_camera_rays(plan, in, hierarchy, walk.hits);
+  } else {
+    trace_first(plan, in, walk, hierarchy);
+  }
   // Camera rays decide for themselves, by the filtered texel: as drawn triangles do.
   begin_rays(plan, in, "gbuffer", walk.passed, Blending::stops);
   store_first(plan, in, walk, gbuffer);

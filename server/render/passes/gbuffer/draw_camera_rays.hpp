@@ -1,0 +1,23 @@
+#pragma once
+
+#include "render/passes/frame_inputs.hpp"
+#include "tracing/ray_tracer.hpp"
+
+namespace heliograph::render {
+
+/// Adds the passes that write shared::Hit for the camera rays of all pixels, as `gbuffer.trace`
+/// does, without tracing what does not move: triangles of the hierarchy's flat tree are drawn by
+/// compute shaders, each intersected with the rays of the pixels that it covers, and the nearest
+/// stays (Laine and Karras, HPG 2011; small ones by an invocation each, as Karis et al., SIGGRAPH
+/// 2021). Only the rest of the scene is traced. Of surfaces equally far from the camera another may
+/// be hit. Frames whose large triangles have more than `most_parts` (shaders/shared/drawn.h) are
+/// traced as a whole.
+void draw_camera_rays(gpu::FramePlan& plan, const FrameInputs& in,
+                      const tracing::WalkedHierarchy& hierarchy, gpu::BufferRef hits,
+                      std::uint32_t most_parts = 1u << 19);
+
+/// Whether that is faster and the device can do it. A triangle costs as much as a few rays.
+bool draws_camera_rays(const gpu::FramePlan& plan, const FrameInputs& in,
+                       const tracing::WalkedHierarchy& hierarchy);
+
+}  // namespace heliograph::render

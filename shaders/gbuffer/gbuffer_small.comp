@@ -1,0 +1,167 @@
+#version 460
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+// Draws the triangles of few pixels, one in each invocation, and lists the parts of larger ones.
+#define DRAWING_GROUP 64
+#include "lib/rays/drawn_triangles.glsl"
+
+layout(set = 1, binding = 4, std430) buffer Parts {
+  uint part_count;
+  uint padding[3];
+  DrawnPart parts[];
+};
+layout(push_constant) uniform Constants {
+  uint first_slot;
+  uint slots;
+  uint most_parts;
+};
+
+shared uint group_first;   // of the parts that it lists next
+shared uint group_pixels;  // of its largest small triangle
+
+/// A rectangle of pixels; empty where `last` is less than `first`.
+struct Pixels {
+  ivec2 first;
+  ivec2 last;
+};
+
+struct Large {
+  uint slot;
+  Pixels covered;
+  Edges edges;
+};
+
+/// Where the camera shows a place in view space, in pixels: whole numbers are their samples.
+vec2 shown_at(vec3 view) {
+  const vec2 slope = enabled(frame_orthographic) ? view.xy : view.xy / -view.z;
+  const vec2 ndc = (slope - frame.unproject.zw) / frame.unproject.xy;
+  return (0.5 + 0.5 * ndc) * vec2(frame.extent) - 0.5;
+}
+
+/// Those whose samples the triangle may cover; `corners` in view space.
+Pixels covered_pixels(vec3 corners[3]) {
+  const float near = enabled(frame_orthographic) ? -1e30 : camera_near_plane();
+  vec2 low = vec2(1e30);
+  vec2 high = vec2(-1e30);
+  for (int i = 0; i < 3; ++i) {
+    const vec3 from = corners[i];
+    const vec3 to = corners[(i + 1) % 3];
+    const bool in_front = -from.z >= near;
+    if (in_front) {
+      const vec2 at = shown_at(from);
+      low = min(low, at);
+      high = max(high, at);
+    }
+    if (in_front != (-to.z >= near)) {
+      vec3 cut = mix(from, to, (near + from.z) / (from.z - to.z));
+      cut.z = -near;
+      const vec2 at = shown_at(cut);
+      low = min(low, at);
+      high = max(high, at);
+    }
+  }
+  // Rounding of what is shown where is far less than a twentieth of a pixel.
+  const vec2 end = vec2(frame.extent);
+  return Pixels(max(ivec2(ceil(clamp(low - 0.05, vec2(-1.0), end))), ivec2(0)),
+                min(ivec2(floor(clamp(high + 0.05, vec2(-1.0), end))), ivec2(frame.extent) - 1));
+}
+
+/// That another leaf draws, too.
+bool drawn_elsewhere(uint slot) {
+  const vec4 first = texelFetch(triangles, int(slot * bvh_texels_per_triangle));
+  return (floatBitsToUint(first.w) & bvh_again_bit) != 0u;
+}
+
+// Parts that wait to be listed, so that a group counts them together.
+shared DrawnPart part_queue[128];
+shared uint parts_queued;
+
+void list_later(uint slot, ivec2 first, ivec2 last) {
+  part_queue[atomicAdd(parts_queued, 1u)] = DrawnPart(slot, packed(first), packed(last), 0u);
+}
+
+/// By all invocations. `end`: also if there are less than one for each.
+void list_queued(bool end) {
+  barrier();
+  const uint count = parts_queued;
+  barrier();
+  const uint first = count - min(count, 64u);
+  if (count >= 64u || end) {
+    if (gl_LocalInvocationIndex == 0u) {
+      group_first = atomicAdd(part_count, count - first);
+      parts_queued = first;
+    }
+    barrier();
+    const uint to = group_first + gl_LocalInvocationIndex;
+    const uint own = first + gl_LocalInvocationIndex;
+    if (own < count && to < most_parts) parts[to] = part_queue[own];
+    barrier();
+  }
+}
+
+// Triangles of several parts.
+shared Large large[64];
+shared uint large_count;
+
+/// By all invocations, a part in each.
+void list_parts(Large triangle) {
+  const int side = int(drawn_part_side);
+  const ivec2 corner = triangle.covered.first / side;
+  const ivec2 grid = triangle.covered.last / side - corner + 1;
+  for (int begin = 0; begin < grid.x * grid.y; begin += 64) {
+    const int i = begin + int(gl_LocalInvocationIndex);
+    const ivec2 at = (corner + ivec2(i % grid.x, i / grid.x)) * side;
+    const ivec2 first = max(triangle.covered.first, at);
+    const ivec2 last = min(triangle.covered.last, at + side - 1);
+    if (i < grid.x * grid.y && may_cover(triangle.edges, first, last)) {
+      list_later(triangle.slot, first, last);
+    }
+    list_queued(false);
+  }
+}
+
+/// By all invocations.
+void list_large(bool is_large, Large own) {
+  const int side = int(drawn_part_side);
+  const bool alone = own.covered.first / side == own.covered.last / side;
+  if (is_large && alone) list_later(own.slot, own.covered.first, own.covered.last);
+  if (is_large && !alone) large[atomicAdd(large_count, 1u)] = own;
+  list_queued(false);
+  for (uint i = 0u; i < large_count; ++i) list_parts(large[i]);
+  list_queued(true);
+}
+
+/// By all invocations.
+void draw_small(uint slot, Edges edges, Pixels covered) {
+  ivec2 pixel = covered.first;
+  for (uint i = 0u; i < group_pixels; ++i) {
+    if (pixel.y <= covered.last.y && may_cover(edges, pixel)) draw_later(slot, pixel);
+    pixel = pixel.x < covered.last.x ? pixel + ivec2(1, 0) : ivec2(covered.first.x, pixel.y + 1);
+    draw_queued(false);
+  }
+  draw_queued(true);
+}
+
+void main() {
+  const uint slot = first_slot + gl_GlobalInvocationID.x;
+  Pixels covered = Pixels(ivec2(0), ivec2(-1));
+  Edges edges;
+  if (gl_GlobalInvocationID.x < slots && !drawn_elsewhere(slot)) {
+    const vec3 corners[3] = corners_in_view(slot);
+    covered = covered_pixels(corners);
+    edges = edges_of(corners);
+  }
+  const ivec2 size = max(covered.last - covered.first + 1, ivec2(0));
+  const uint pixels = uint(size.x) * uint(size.y);
+  const bool is_large = pixels > small_triangle_pixels;
+  if (gl_LocalInvocationIndex == 0u) {
+    parts_queued = 0u;
+    large_count = 0u;
+    group_pixels = 0u;
+  }
+  begin_drawing();
+  if (!is_large) atomicMax(group_pixels, pixels);
+  list_large(is_large, Large(slot, covered, edges));
+  if (is_large) covered.last.y = -1;
+  draw_small(slot, edges, covered);
+}

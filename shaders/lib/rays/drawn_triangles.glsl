@@ -1,0 +1,123 @@
+// What camera rays meet first, by drawing: where a triangle covers a pixel, it is intersected with
+// that pixel's ray, and the nearest of all stays. Binding 3 of the pass set is the nearest.
+#ifndef HELIOGRAPH_DRAWN_TRIANGLES_GLSL
+#define HELIOGRAPH_DRAWN_TRIANGLES_GLSL
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_EXT_shader_atomic_int64 : require
+#define ANY_HIT false
+#define BVH_BINDING 0
+#include "lib/rays/bvh.glsl"
+#include "lib/rays/gbuffer_ray.glsl"
+#include "shared/drawn.h"
+
+// t of the hit in the upper half, whose bits grow with it, the triangle's slot in the lower.
+layout(set = 1, binding = 3, std430) buffer Nearest { uint64_t nearest[]; };
+
+/// gbuffer_ray_index() of the invocation of that pixel.
+uint drawn_index(uvec2 pixel) {
+  uint tiles_in_row = (frame.extent.x + 7u) / 8u;
+  uint tile = (pixel.y >> 3u) * tiles_in_row + (pixel.x >> 3u);
+  return tile * 64u + (pixel.y & 7u) * 8u + (pixel.x & 7u);
+}
+
+/// In view space: relative to the eye first, so that places far from the origin keep their digits.
+vec3 in_view(vec3 corner) { return mat3(frame.view) * (corner - frame.eye.xyz); }
+
+vec3[3] corners_in_view(uint slot) {
+  const int texel = int(slot * bvh_texels_per_triangle);
+  return vec3[3](in_view(texelFetch(triangles, texel).xyz),
+                 in_view(texelFetch(triangles, texel + 1).xyz),
+                 in_view(texelFetch(triangles, texel + 2).xyz));
+}
+
+// On which side of each edge a pixel lies: at + across x + down y, which is negative outside. Also
+// of triangles that reach behind the camera (Olano and Greer, Graphics Hardware 1997).
+struct Edges {
+  vec3 at;
+  vec3 across;
+  vec3 down;
+};
+
+Edges edges_of(vec3 corners[3]) {
+  const vec2 step = 2.0 * frame.unproject.xy / vec2(frame.extent);
+  const vec2 origin = 0.5 * step - frame.unproject.xy + frame.unproject.zw;
+  const bool orthographic = enabled(frame_orthographic);
+  const vec3 toward = orthographic ? vec3(0.0, 0.0, 1.0) : corners[0];
+  const float turn =
+      dot(cross(corners[1] - corners[0], corners[2] - corners[0]), toward) < 0.0 ? -1.0 : 1.0;
+  Edges edges;
+  for (int i = 0; i < 3; ++i) {
+    const vec3 from = corners[i];
+    const vec3 along = turn * (corners[(i + 1) % 3] - from);
+    // Times (x, y, 1) of a slope, or of a place on the image plane.
+    vec3 normal = cross(from, along) * vec3(1.0, 1.0, -1.0);
+    if (orthographic) normal = vec3(-along.y, along.x, along.y * from.x - along.x * from.y);
+    edges.across[i] = normal.x * step.x;
+    edges.down[i] = normal.y * step.y;
+    edges.at[i] = normal.x * origin.x + normal.y * origin.y + normal.z;
+  }
+  return edges;
+}
+
+/// Whether the triangle may cover a pixel of the rectangle; a little more than it does, so that
+/// rounding takes nothing away.
+bool may_cover(Edges edges, ivec2 first, ivec2 last) {
+  const vec3 slack = 0.05 * (abs(edges.across) + abs(edges.down));
+  const vec3 most = edges.at + max(edges.across * float(first.x), edges.across * float(last.x)) +
+                    max(edges.down * float(first.y), edges.down * float(last.y)) + slack;
+  return all(greaterThanEqual(most, vec3(0.0)));
+}
+
+bool may_cover(Edges edges, ivec2 pixel) { return may_cover(edges, pixel, pixel); }
+
+void draw_pixel(uint slot, ivec2 pixel) {
+  const Ray ray = gbuffer_ray(pixel);
+  const Line line = make_line(ray.origin, ray.direction);
+  vec3 tuv;
+  uvec3 words;
+  if (!triangle_hit(slot, line, vec2(ray.t_min, ray.t_max), tuv, words)) return;
+  const uvec3 numbers = words & bvh_number_mask;
+  if (words.z != bvh_no_link && !mask_stops(numbers.z, tuv, numbers.y, numbers.x)) return;
+  const uint64_t key = uint64_t(floatBitsToUint(tuv.x)) << 32 | uint64_t(slot);
+  const uint index = drawn_index(uvec2(pixel));
+  // Reading costs less, and most of what lies behind ends here.
+  if (key < nearest[index]) atomicMin(nearest[index], key);
+}
+
+#ifdef DRAWING_GROUP
+// Few pixels of a triangle's rectangle are covered: those that are wait until there is one for every
+// invocation of the group, of which there are DRAWING_GROUP.
+shared uvec2 queue[2 * DRAWING_GROUP];
+shared uint queued;
+
+uint packed(ivec2 pixel) { return uint(pixel.x) | uint(pixel.y) << 16u; }
+
+ivec2 unpacked(uint pixel) { return ivec2(pixel & 0xffffu, pixel >> 16u); }
+
+void begin_drawing() {
+  if (gl_LocalInvocationIndex == 0u) queued = 0u;
+  barrier();
+}
+
+/// Once in each invocation, if at all, before draw_queued().
+void draw_later(uint slot, ivec2 pixel) {
+  queue[atomicAdd(queued, 1u)] = uvec2(slot, packed(pixel));
+}
+
+/// By all invocations. `end`: also if there are less than one for each.
+void draw_queued(bool end) {
+  barrier();
+  const uint count = queued;
+  barrier();
+  const uint first = count - min(count, uint(DRAWING_GROUP));
+  if (count >= DRAWING_GROUP || end) {
+    const uint own = first + gl_LocalInvocationIndex;
+    if (own < count) draw_pixel(queue[own].x, unpacked(queue[own].y));
+    barrier();
+    if (gl_LocalInvocationIndex == 0u) queued = first;
+    barrier();
+  }
+}
+#endif
+
+#endif

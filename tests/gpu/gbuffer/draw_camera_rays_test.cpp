@@ -1,0 +1,177 @@
+#include "render/passes/gbuffer/draw_camera_rays.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <glm/ext/matrix_transform.hpp>
+#include <string>
+#include <vector>
+
+#include "render/passes/formats.hpp"
+#include "render/passes/gbuffer/trace_gbuffer.hpp"
+#include "render/passes/rays/ray_stream.hpp"
+#include "scene/import.hpp"
+#include "tests/gpu/support/kernel_comparison.hpp"
+#include "tests/gpu/support/textured_scene.hpp"
+
+namespace heliograph::test {
+namespace {
+
+constexpr std::uint32_t many_parts = 1u << 14;
+
+/// What the camera rays of one view hit: traced and drawn.
+class TracedAndDrawn {
+ public:
+  TracedAndDrawn(std::shared_ptr<const scene::Scene> scene, const scene::Camera& camera,
+                 VkExtent2D extent, std::uint32_t most_parts = many_parts)
+      : rig_(std::move(scene), camera, {.extent = extent, .tracer = "software"}) {
+    gpu::FramePlan& plan = rig_.plan();
+    const render::FrameInputs& in = with_host_kernels(rig_, false);
+    const render::kernels::Rows rows{0, static_cast<int>(extent.height)};
+    rays_ = render::camera_ray_capacity(extent.width, rows);
+    const auto buffer = [&](const char* name) {
+      return plan.buffer(name, sizeof(shared::Hit) * rays_, render::formats::storage,
+                         gpu::Memory::readback);
+    };
+    traced_ = buffer("traced");
+    drawn_ = buffer("drawn");
+    const auto stream = render::declare_rays(plan, "stream", rays_, tracing::RayKind::camera);
+    render::camera_rays(plan, in, "stream.rays", stream, rows);
+    in.tracer.trace_closest(plan, "stream.trace", in.structure, stream, traced_);
+    const auto hierarchy = in.tracer.walked(in.structure);
+    flat_ = hierarchy.value().flat;
+    render::draw_camera_rays(plan, in, *hierarchy, drawn_, most_parts);
+  }
+
+  FrameRig& rig() { return rig_; }
+  const tracing::WalkedHierarchy::Flat& flat() const { return flat_; }
+
+  /// @returns the part of all rays that hit something
+  double expect_equal(const std::string& which) {
+    rig_.run();
+    const std::vector<shared::Hit> traced = hits(traced_), drawn = hits(drawn_);
+    std::size_t met = 0, other_triangles = 0;
+    for (std::size_t i = 0; i < traced.size(); ++i) {
+      const shared::Hit &a = traced[i], &b = drawn[i];
+      met += a.instance != shared::hit_none;
+      const bool same = a.instance == b.instance && a.triangle == b.triangle;
+      if (a.instance != shared::hit_none) other_triangles += !same;
+      EXPECT_EQ(a.instance == shared::hit_none, b.instance == shared::hit_none)
+          << which << ", ray " << i;
+      EXPECT_LE(std::abs(a.t - b.t), 1e-5f * std::abs(a.t)) << which << ", ray " << i;
+      if (same) {
+        EXPECT_LE(std::max(std::abs(a.u - b.u), std::abs(a.v - b.v)), 1e-4f) << which;
+      }
+      if (testing::Test::HasFailure()) break;
+    }
+    // Where two triangles meet.
+    EXPECT_LE(static_cast<double>(other_triangles), 0.01 * static_cast<double>(met)) << which;
+    return static_cast<double>(met) / static_cast<double>(traced.size());
+  }
+
+ private:
+  std::vector<shared::Hit> hits(gpu::BufferRef from) {
+    std::vector<shared::Hit> hits(rays_);
+    std::memcpy(hits.data(), rig_.plan().get(from).mapped(), sizeof(shared::Hit) * rays_);
+    return hits;
+  }
+
+  FrameRig rig_;
+  std::uint32_t rays_;
+  gpu::BufferRef traced_, drawn_;
+  tracing::WalkedHierarchy::Flat flat_;
+};
+
+class DrawCameraRays : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!device().atomics_64()) GTEST_SKIP() << "no atomic operations on 64-bit integers";
+  }
+};
+
+/// A room of large quads, wall by wall, with a sphere of many triangles: around its middle.
+std::shared_ptr<const scene::Scene> room() {
+  SceneBuilder builder;
+  const auto wall = builder.add_quad({{{-4, -4, -4}, {4, -4, -4}, {4, 4, -4}, {-4, 4, -4}}},
+                                     surface({0.5f, 0.5f, 0.5f}));
+  for (const glm::vec3& axis : {glm::vec3(1, 0, 0), glm::vec3(0, 1, 0)}) {
+    for (int quarter = 0; quarter < 4; ++quarter) {
+      const float angle = glm::radians(90.0f * static_cast<float>(quarter));
+      builder.place(wall, glm::rotate(glm::mat4(1.0f), angle, axis));
+    }
+  }
+  const auto sphere = builder.add_sphere(0.7f, surface({0.2f, 0.8f, 0.3f}));
+  builder.place(sphere, glm::translate(glm::mat4(1.0f), {0.5f, -0.4f, -2.0f}));
+  // Around the camera: a corner of every triangle is behind it.
+  builder.place(builder.add_quad({{{-9, -0.3f, 9}, {9, -0.3f, 9}, {9, -0.3f, -3}, {-9, -0.3f, -3}}},
+                                 surface({0.7f, 0.4f, 0.1f})));
+  return builder.build();
+}
+
+TEST_F(DrawCameraRays, FindsWhatRaysHit) {
+  for (const bool orthographic : {false, true}) {
+    for (const auto& [name, scene] :
+         {std::pair("textured", textured_scene()), std::pair("transparent", transparent_scene())}) {
+      scene::Camera camera = scene::fit_camera(scene->bounds, 40.0f, 1.5f);
+      if (orthographic) camera.orthographic_height = 2.2f * scene->bounds.radius();
+      TracedAndDrawn both(scene, camera, {150, 100});
+      both.rig().set_view(camera, 3);
+      const double met =
+          both.expect_equal(std::string(name) + (orthographic ? ", orthographic" : ""));
+      EXPECT_GT(met, 0.1) << name;
+      EXPECT_TRUE(both.flat().all);
+    }
+  }
+}
+
+TEST_F(DrawCameraRays, CutsTrianglesAtTheNearPlane) {
+  const auto scene = room();
+  for (const glm::vec3& target : {glm::vec3(0.3f, -0.2f, -1),
+                                  {1, -0.4f, 0.2f},
+                                  {0.1f, -1, 0.1f},
+                                  {0.1f, 1, 0.3f},
+                                  {-0.6f, 0.1f, 0.9f}}) {
+    TracedAndDrawn both(scene, look({0, 0, 0}, target, 70.0f), {333, 187});
+    EXPECT_GT(both.expect_equal("toward " + std::to_string(target.x)), 0.9);
+  }
+}
+
+TEST_F(DrawCameraRays, WorksAtAnySize) {
+  const auto scene = room();
+  for (const VkExtent2D extent : {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {65, 129}, {130, 1}}) {
+    TracedAndDrawn both(scene, look({0, 0, 0}, {0.3f, -0.2f, -1}), extent);
+    both.expect_equal(std::to_string(extent.width) + " x " + std::to_string(extent.height));
+  }
+}
+
+TEST_F(DrawCameraRays, TracesFramesWithTooManyParts) {
+  const auto scene = room();
+  for (const std::uint32_t most_parts : {0u, 1u, 5u}) {
+    TracedAndDrawn both(scene, look({0, 0, 0}, {0.3f, -0.2f, -1}, 70.0f), {200, 140}, most_parts);
+    both.expect_equal(std::to_string(most_parts) + " parts");
+  }
+}
+
+TEST_F(DrawCameraRays, TracesInstancesThatMove) {
+  const char* assets = std::getenv("HELIOGRAPH_TEST_ASSETS");
+  if (!assets) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";
+  const auto scene = std::make_shared<const scene::Scene>(
+      scene::import_gltf(std::filesystem::path(assets) / "gltf" / "BoxAnimated.glb"));
+  const scene::Camera camera = scene::fit_camera(scene->bounds, 40.0f, 1.5f);
+  TracedAndDrawn both(scene, camera, {120, 80});
+  EXPECT_GT(both.flat().count, 0u);
+  EXPECT_FALSE(both.flat().all);
+  for (const double seconds : {0.0, 1.2, 2.5}) {
+    both.rig().moving().set_pose(&scene->clips.at(0), seconds);
+    both.rig().moving().advance();
+    both.rig().set_view(camera);
+    EXPECT_GT(both.expect_equal("at " + std::to_string(seconds)), 0.1);
+  }
+}
+
+}  // namespace
+}  // namespace heliograph::test
