@@ -12,7 +12,8 @@ layout(set = 1, binding = 4, std430) readonly buffer Parts {
 };
 layout(push_constant) uniform Constants { uint most_parts; };
 
-void draw_later(DrawnPart part) {
+/// By all invocations.
+void draw_part(DrawnPart part) {
   const ivec2 lane = ivec2(gl_LocalInvocationIndex & 7u, gl_LocalInvocationIndex >> 3u);
   const ivec2 first = unpacked(part.first);
   const ivec2 last = unpacked(part.last);
@@ -29,7 +30,7 @@ void draw_later(DrawnPart part) {
 
 void main() {
   begin_drawing();
-  const uint count = min(part_count, most_parts);
-  for (uint i = gl_WorkGroupID.x; i < count; i += gl_NumWorkGroups.x) draw_later(parts[i]);
+  if (part_count > most_parts) return;  // gbuffer_drawn.comp traces all rays then
+  for (uint i = gl_WorkGroupID.x; i < part_count; i += gl_NumWorkGroups.x) draw_part(parts[i]);
   draw_queued(true);
 }

@@ -56,17 +56,19 @@ Pixels covered_pixels(vec3 corners[3]) {
       vec3 cut = mix(from, to, (near + from.z) / (from.z - to.z));
       cut.z = -near;
       const vec2 at = shown_at(cut);
-      low = min(low, at);
-      high = max(high, at);
+      // Rounding of the cut, as a slope.
+      const float off = 2e-7 * length(to - from) / (near * pixel_footprint(1.0));
+      low = min(low, at - off);
+      high = max(high, at + off);
     }
   }
-  // Rounding of what is shown where is far less than a twentieth of a pixel.
+  const float slack = drawn_slack();
   const vec2 end = vec2(frame.extent);
-  return Pixels(max(ivec2(ceil(clamp(low - 0.05, vec2(-1.0), end))), ivec2(0)),
-                min(ivec2(floor(clamp(high + 0.05, vec2(-1.0), end))), ivec2(frame.extent) - 1));
+  return Pixels(max(ivec2(ceil(clamp(low - slack, vec2(-1.0), end))), ivec2(0)),
+                min(ivec2(floor(clamp(high + slack, vec2(-1.0), end))), ivec2(frame.extent) - 1));
 }
 
-/// That another leaf draws, too.
+/// Whether this is a copy: the first leaf that has the triangle draws it.
 bool drawn_elsewhere(uint slot) {
   const vec4 first = texelFetch(triangles, int(slot * bvh_texels_per_triangle));
   return (floatBitsToUint(first.w) & bvh_again_bit) != 0u;
@@ -80,7 +82,7 @@ void list_later(uint slot, ivec2 first, ivec2 last) {
   part_queue[atomicAdd(parts_queued, 1u)] = DrawnPart(slot, packed(first), packed(last), 0u);
 }
 
-/// By all invocations. `end`: also if there are less than one for each.
+/// By all invocations. `end`: also if there are fewer than invocations.
 void list_queued(bool end) {
   barrier();
   const uint count = parts_queued;
@@ -88,7 +90,8 @@ void list_queued(bool end) {
   const uint first = count - min(count, 64u);
   if (count >= 64u || end) {
     if (gl_LocalInvocationIndex == 0u) {
-      group_first = atomicAdd(part_count, count - first);
+      // Once it is too long it grows no more, so that the count never wraps.
+      group_first = part_count > most_parts ? most_parts : atomicAdd(part_count, count - first);
       parts_queued = first;
     }
     barrier();
@@ -162,6 +165,6 @@ void main() {
   begin_drawing();
   if (!is_large) atomicMax(group_pixels, pixels);
   list_large(is_large, Large(slot, covered, edges));
-  if (is_large) covered.last.y = -1;
+  if (is_large || pixels == 0u) covered.last.y = -1;
   draw_small(slot, edges, covered);
 }

@@ -72,6 +72,7 @@ void DeviceTurns::drop(Clock::time_point now) {
 }
 
 void DeviceTurns::pass_time(Clock::time_point now) {
+  now = std::max(now, used_until_);
   if (frames_ > 0) used_ += (now - used_until_) / frames_;
   used_until_ = now;
 }

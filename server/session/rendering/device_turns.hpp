@@ -33,7 +33,7 @@ class DeviceTurns {
   /// As FairShare::hold_back.
   std::optional<Clock::time_point> hold_back(const Contender& contender, Clock::time_point now);
 
-  /// That the device works on.
+  /// A frame that the device works on.
   struct Frame {
     Clock::time_point begun{};
     FairShare::Duration used_before{};  // DeviceTurns::used_
@@ -42,7 +42,7 @@ class DeviceTurns {
   /// from one end to the next, the first to end of many would pay for all, and its view starve.
   Frame begin(Clock::time_point now);
   void finish(const Contender& contender, const Frame& frame, Clock::time_point now);
-  /// A frame is over that no view is charged for.
+  /// Ends a frame without charging a view.
   void drop(Clock::time_point now);
   void remove(FairShare::Key view);
 
@@ -59,8 +59,8 @@ class DeviceTurns {
   FairShare among_refining_;
   FairShare::Duration moving_frame_{0};  // how long one takes, smoothed; zero: there was none
   int frames_ = 0;                       // that have begun and are not over
-  FairShare::Duration used_{0};          // of the device, by a frame that goes on and on
-  Clock::time_point used_until_{};       // when that was
+  FairShare::Duration used_{0};  // what a frame that has been there all the time would be charged
+  Clock::time_point used_until_{};  // when that was
 };
 
 }  // namespace heliograph::session

@@ -59,7 +59,8 @@ void FairShare::charge(Key key, Clock::time_point begin, Clock::time_point end, 
   Account paid = account(key);
   virtual_now_ = std::max(virtual_now_, paid.next_start);
   const Duration waited = waited_for(paid, begin);
-  const Duration pause = begin - paid.ended;
+  // Frames of several views that share an account may overlap.
+  const Duration pause = std::max<Duration>(begin - paid.ended, Duration::zero());
   const bool undisturbed = paid.turn > 0 && paid.turn == turns_;
   if (undisturbed && pause <= max_wait) paid.pause += (pause - paid.pause) / 4;
   if (paid.awaited_since) {

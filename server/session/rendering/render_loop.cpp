@@ -240,16 +240,15 @@ bool RenderLoop::draw_in_turn(const std::shared_ptr<SessionView>& view) {
   if (view->next_frame_moves()) moved_at_ = start;
   // Nothing may fail between the begin of a frame and its being listed.
   in_flight_.reserve(engine_.frames_at_once() + 1);
-  const DeviceTurns::Frame frame = turns_.begin(start);
   const SessionView::Work work = advance(*view, true);
   // The device goes on with this frame while that of another view is shown.
   while (view->in_flight() && in_flight_.size() >= engine_.frames_at_once()) finish_a_frame(false);
+  // A frame that waited for one before it did not use the device meanwhile.
+  const Clock::time_point begun = std::max(start, device_free_);
   if (view->in_flight() && device_ready_) {
-    in_flight_.push_back({view, frame, contender.kind});
+    in_flight_.push_back({view, turns_.begin(begun), contender.kind});
   } else if (work == SessionView::Work::drawing) {
-    frame_finished(*view, frame, contender.kind);
-  } else {
-    turns_.drop(Clock::now());
+    frame_finished(*view, turns_.begin(begun), contender.kind);
   }
   return work != SessionView::Work::none;
 }

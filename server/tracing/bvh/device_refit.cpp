@@ -123,7 +123,7 @@ void DeviceRefit::refit_boxes(const gpu::ComputeProgram& program, gpu::BufferRef
         .read(plan_.import(levels_))
         .read_write(records)
         .constants(shared::RefitLevels{first, end})
-        .dispatch(threads(std::max(nodes_of(first), 1u)));
+        .dispatch(threads(nodes_of(first)));
   }
 }
 

@@ -71,7 +71,7 @@ class SoftwareStructure : public virtual AccelerationStructure {
 };
 
 WalkedHierarchy::Flat flat_triangles_of(const Bvh& bvh) {
-  // In whatever pose, its record is the only one.
+  // Without any, the flat tree is all that rays can hit, in every pose.
   std::size_t others = 0;
   for (std::size_t i = 0; i < bvh.flat.size(); ++i) others += !bvh.flat[i] && !bvh.hidden[i];
   return {.first = static_cast<std::uint32_t>(bvh.flat_tree.first_triangle),

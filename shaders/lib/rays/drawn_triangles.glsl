@@ -20,6 +20,14 @@ uint drawn_index(uvec2 pixel) {
   return tile * 64u + (pixel.y & 7u) * 8u + (pixel.x & 7u);
 }
 
+/// By how many pixels the rays of a pixel may miss its sample. An orthographic camera's begin at
+/// places in the world, which far from the origin have few digits left.
+float drawn_slack() {
+  if (!enabled(frame_orthographic)) return 0.05;
+  const vec3 far = abs(frame.eye.xyz);
+  return 0.05 + 2e-6 * max(far.x, max(far.y, far.z)) / pixel_footprint(1.0);
+}
+
 /// In view space: relative to the eye first, so that places far from the origin keep their digits.
 vec3 in_view(vec3 corner) { return mat3(frame.view) * (corner - frame.eye.xyz); }
 
@@ -55,6 +63,8 @@ Edges edges_of(vec3 corners[3]) {
     edges.across[i] = normal.x * step.x;
     edges.down[i] = normal.y * step.y;
     edges.at[i] = normal.x * origin.x + normal.y * origin.y + normal.z;
+    // Where both corners lie in nearly the same direction, rounding is large beside the result.
+    edges.at[i] += 1e-6 * (orthographic ? length(from.xy) : length(from)) * length(along);
   }
   return edges;
 }
@@ -62,7 +72,7 @@ Edges edges_of(vec3 corners[3]) {
 /// Whether the triangle may cover a pixel of the rectangle; a little more than it does, so that
 /// rounding takes nothing away.
 bool may_cover(Edges edges, ivec2 first, ivec2 last) {
-  const vec3 slack = 0.05 * (abs(edges.across) + abs(edges.down));
+  const vec3 slack = drawn_slack() * (abs(edges.across) + abs(edges.down));
   const vec3 most = edges.at + max(edges.across * float(first.x), edges.across * float(last.x)) +
                     max(edges.down * float(first.y), edges.down * float(last.y)) + slack;
   return all(greaterThanEqual(most, vec3(0.0)));
@@ -77,6 +87,7 @@ void draw_pixel(uint slot, ivec2 pixel) {
   uvec3 words;
   if (!triangle_hit(slot, line, vec2(ray.t_min, ray.t_max), tuv, words)) return;
   const uvec3 numbers = words & bvh_number_mask;
+  blending = 0u;  // blended surfaces stop the ray
   if (words.z != bvh_no_link && !mask_stops(numbers.z, tuv, numbers.y, numbers.x)) return;
   const uint64_t key = uint64_t(floatBitsToUint(tuv.x)) << 32 | uint64_t(slot);
   const uint index = drawn_index(uvec2(pixel));
@@ -104,7 +115,7 @@ void draw_later(uint slot, ivec2 pixel) {
   queue[atomicAdd(queued, 1u)] = uvec2(slot, packed(pixel));
 }
 
-/// By all invocations. `end`: also if there are less than one for each.
+/// By all invocations. `end`: also if there are fewer than invocations.
 void draw_queued(bool end) {
   barrier();
   const uint count = queued;

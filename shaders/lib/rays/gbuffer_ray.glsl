@@ -1,18 +1,17 @@
 // The camera rays that find the G-buffer: one through every pixel's sample, tile by tile, so that
-// neighbours in the stream see the same part of the scene. For groups of 8 x 8 invocations, one for
-// each pixel.
+// neighbours in the stream see the same part of the scene.
 #ifndef HELIOGRAPH_GBUFFER_RAY_GLSL
 #define HELIOGRAPH_GBUFFER_RAY_GLSL
 #include "lib/frame.glsl"
 #include "shared/ray.h"
 
-/// Of this invocation's ray.
+/// Of this invocation's ray, in groups of 8 x 8 invocations, one for each pixel.
 uint gbuffer_ray_index() {
   uint tile = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
   return tile * 64u + gl_LocalInvocationIndex;
 }
 
-/// The near plane is what the reversed projection leaves of every point's depth, metres.
+/// Of a perspective view, metres: what the reversed projection leaves of every point's depth.
 float camera_near_plane() { return (frame.unjittered * vec4(0.0, 0.0, 0.0, 1.0)).z; }
 
 /// Blended surfaces stop it: RayCount::blending of its stream is 0.

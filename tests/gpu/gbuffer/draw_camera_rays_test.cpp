@@ -140,6 +140,29 @@ TEST_F(DrawCameraRays, CutsTrianglesAtTheNearPlane) {
   }
 }
 
+// Places there have few digits left, and corners of long edges lie in nearly the same direction.
+TEST_F(DrawCameraRays, LosesNoPixelsFarFromOriginOrAlongLongEdges) {
+  for (const float side : {300.0f, 3000.0f}) {
+    for (const float from_origin : {0.0f, 10000.0f}) {
+      SceneBuilder builder;
+      const auto ground = builder.add_quad(
+          {{{-side, 0, side}, {side, 0, side}, {side, 0, -side}, {-side, 0, -side}}},
+          surface({0.5f, 0.5f, 0.5f}));
+      const glm::vec3 place(from_origin, 0, -from_origin);
+      builder.place(ground, glm::translate(glm::mat4(1.0f), place));
+      const auto scene = builder.build();
+      for (const bool orthographic : {false, true}) {
+        const glm::vec3 eye = place + glm::vec3(0.31f, 1.7f, 0.3f);
+        scene::Camera camera = look(eye, eye + glm::vec3(0.7f, -0.6f, -0.71f), 60.0f);
+        if (orthographic) camera.orthographic_height = 5.0f;
+        TracedAndDrawn both(scene, camera, {480, 270});
+        both.expect_equal("side " + std::to_string(side) + ", " + std::to_string(from_origin) +
+                          " from the origin" + (orthographic ? ", orthographic" : ""));
+      }
+    }
+  }
+}
+
 TEST_F(DrawCameraRays, WorksAtAnySize) {
   const auto scene = room();
   for (const VkExtent2D extent : {VkExtent2D{1, 1}, {3, 5}, {16, 2}, {65, 129}, {130, 1}}) {

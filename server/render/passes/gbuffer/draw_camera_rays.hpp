@@ -10,13 +10,16 @@ namespace heliograph::render {
 /// compute shaders, each intersected with the rays of the pixels that it covers, and the nearest
 /// stays (Laine and Karras, HPG 2011; small ones by an invocation each, as Karis et al., SIGGRAPH
 /// 2021). Only the rest of the scene is traced. Of surfaces equally far from the camera another may
-/// be hit. Frames whose large triangles have more than `most_parts` (shaders/shared/drawn.h) are
-/// traced as a whole.
+/// be hit. Frames whose large triangles have more than `most_parts` (shared::DrawnPart) are traced
+/// as a whole.
 void draw_camera_rays(gpu::FramePlan& plan, const FrameInputs& in,
                       const tracing::WalkedHierarchy& hierarchy, gpu::BufferRef hits,
-                      std::uint32_t most_parts = 1u << 19);
+                      std::uint32_t most_parts);
 
-/// Whether that is faster and the device can do it. A triangle costs as much as a few rays.
+/// Some layers of triangles that fill a frame of this size, and many small ones.
+std::uint32_t most_drawn_parts(VkExtent2D extent);
+
+/// Whether that is expected to be faster than tracing, and the device can do it.
 bool draws_camera_rays(const gpu::FramePlan& plan, const FrameInputs& in,
                        const tracing::WalkedHierarchy& hierarchy);
 

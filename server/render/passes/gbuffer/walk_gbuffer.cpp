@@ -147,7 +147,7 @@ GBuffer walk_gbuffer(gpu::FramePlan& plan, const FrameInputs& in,
   const GBuffer gbuffer = declare_gbuffer(plan, in.moving.features_without_emission());
   const Walk walk = declare_walk(plan, in, hierarchy);
   if (draws_camera_rays(plan, in, hierarchy)) {
-    draw_camera_rays(plan, in, hierarchy, walk.hits);
+    draw_camera_rays(plan, in, hierarchy, walk.hits, most_drawn_parts(plan.extent()));
   } else {
     trace_first(plan, in, walk, hierarchy);
   }
