@@ -38,14 +38,14 @@ vec2 shown_at(vec3 view) {
   return (0.5 + 0.5 * ndc) * vec2(frame.extent) - 0.5;
 }
 
-/// Those whose samples the triangle may cover; `corners` in view space.
+/// Those whose samples the triangle may cover; of corners_from_eye().
 Pixels covered_pixels(vec3 corners[3]) {
   const float near = enabled(frame_orthographic) ? -1e30 : camera_near_plane();
   vec2 low = vec2(1e30);
   vec2 high = vec2(-1e30);
   for (int i = 0; i < 3; ++i) {
-    const vec3 from = corners[i];
-    const vec3 to = corners[(i + 1) % 3];
+    const vec3 from = mat3(frame.view) * corners[i];
+    const vec3 to = mat3(frame.view) * corners[(i + 1) % 3];
     const bool in_front = -from.z >= near;
     if (in_front) {
       const vec2 at = shown_at(from);
@@ -150,7 +150,7 @@ void main() {
   Pixels covered = Pixels(ivec2(0), ivec2(-1));
   Edges edges;
   if (gl_GlobalInvocationID.x < slots && !drawn_elsewhere(slot)) {
-    const vec3 corners[3] = corners_in_view(slot);
+    const vec3 corners[3] = corners_from_eye(slot);
     covered = covered_pixels(corners);
     edges = edges_of(corners);
   }

@@ -28,14 +28,12 @@ float drawn_slack() {
   return 0.05 + 2e-6 * max(far.x, max(far.y, far.z)) / pixel_footprint(1.0);
 }
 
-/// In view space: relative to the eye first, so that places far from the origin keep their digits.
-vec3 in_view(vec3 corner) { return mat3(frame.view) * (corner - frame.eye.xyz); }
-
-vec3[3] corners_in_view(uint slot) {
+/// Relative to the eye: places far from the origin keep their digits.
+vec3[3] corners_from_eye(uint slot) {
   const int texel = int(slot * bvh_texels_per_triangle);
-  return vec3[3](in_view(texelFetch(triangles, texel).xyz),
-                 in_view(texelFetch(triangles, texel + 1).xyz),
-                 in_view(texelFetch(triangles, texel + 2).xyz));
+  return vec3[3](texelFetch(triangles, texel).xyz - frame.eye.xyz,
+                 texelFetch(triangles, texel + 1).xyz - frame.eye.xyz,
+                 texelFetch(triangles, texel + 2).xyz - frame.eye.xyz);
 }
 
 // On which side of each edge a pixel lies: at + across x + down y, which is negative outside. Also
@@ -46,25 +44,32 @@ struct Edges {
   vec3 down;
 };
 
+/// Of corners_from_eye(): along the world's axes, which walls and floors follow, so that little is
+/// lost by rounding.
 Edges edges_of(vec3 corners[3]) {
+  const mat3 view = mat3(frame.view);
   const vec2 step = 2.0 * frame.unproject.xy / vec2(frame.extent);
   const vec2 origin = 0.5 * step - frame.unproject.xy + frame.unproject.zw;
   const bool orthographic = enabled(frame_orthographic);
-  const vec3 toward = orthographic ? vec3(0.0, 0.0, 1.0) : corners[0];
-  const float turn =
-      dot(cross(corners[1] - corners[0], corners[2] - corners[0]), toward) < 0.0 ? -1.0 : 1.0;
+  const vec3 normal_of_all = cross(corners[1] - corners[0], corners[2] - corners[0]);
+  const float toward = orthographic ? (view * normal_of_all).z : dot(normal_of_all, corners[0]);
+  const float turn = toward < 0.0 ? -1.0 : 1.0;
   Edges edges;
   for (int i = 0; i < 3; ++i) {
     const vec3 from = corners[i];
     const vec3 along = turn * (corners[(i + 1) % 3] - from);
     // Times (x, y, 1) of a slope, or of a place on the image plane.
-    vec3 normal = cross(from, along) * vec3(1.0, 1.0, -1.0);
-    if (orthographic) normal = vec3(-along.y, along.x, along.y * from.x - along.x * from.y);
+    vec3 normal = view * cross(from, along) * vec3(1.0, 1.0, -1.0);
+    if (orthographic) {
+      const vec2 start = (view * from).xy;
+      const vec2 shown = (view * along).xy;
+      normal = vec3(-shown.y, shown.x, shown.y * start.x - shown.x * start.y);
+    }
     edges.across[i] = normal.x * step.x;
     edges.down[i] = normal.y * step.y;
-    edges.at[i] = normal.x * origin.x + normal.y * origin.y + normal.z;
-    // Where both corners lie in nearly the same direction, rounding is large beside the result.
-    edges.at[i] += 1e-6 * (orthographic ? length(from.xy) : length(from)) * length(along);
+    // Rounding is large beside the result where both corners lie in nearly the same direction.
+    edges.at[i] = normal.x * origin.x + normal.y * origin.y + normal.z +
+                  1e-6 * length(from) * length(along);
   }
   return edges;
 }

@@ -165,6 +165,7 @@ TEST_F(DeviceTurnsTest, FramesThatOverlapPayEqualParts) {
   for (const View& view : views_) EXPECT_EQ(view.frames, 50);
 }
 
+// Sanitizers find times that overflow.
 TEST_F(DeviceTurnsTest, RefiningFramesThatOverlapAreExpectedBack) {
   View& first = add({.cost = 16ms, .kind = TurnKind::refining});
   View& second = add({.cost = 16ms, .kind = TurnKind::refining});
