@@ -52,7 +52,7 @@ void FairShare::stop_waiting(Account& account, Clock::time_point now) const {
   account.failed_waits = std::min(account.failed_waits + 1, max_doublings);
   account.skipped_until_turn = turns_ + (std::uint64_t{1} << account.failed_waits);
   // It may only need longer than the timeout.
-  account.pause = std::min<Duration>(2 * account.pause, max_wait / 2);
+  account.pause = std::min<Duration>(wait_timeout(account), max_wait / 2);
 }
 
 void FairShare::charge(Key key, Clock::time_point begin, Clock::time_point end, Duration used) {
