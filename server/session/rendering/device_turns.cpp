@@ -80,10 +80,9 @@ void DeviceTurns::pass_time(Clock::time_point now) {
 void DeviceTurns::charge(const Contender& contender, Clock::time_point begin, Clock::time_point end,
                          FairShare::Duration used) {
   switch (contender.kind) {
-    case TurnKind::moving: {
+    case TurnKind::moving:
       moving_frame_ += (used - moving_frame_) / (moving_frame_ == FairShare::Duration(0) ? 1 : 4);
       break;
-    }
     case TurnKind::starting:
       among_starting_.charge(contender.view, begin, end, used);
       if (moving_frame_ > FairShare::Duration(0)) used = std::min(used, moving_frame_);

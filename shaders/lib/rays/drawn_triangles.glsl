@@ -36,8 +36,9 @@ vec3[3] corners_from_eye(uint slot) {
                  texelFetch(triangles, texel + 2).xyz - frame.eye.xyz);
 }
 
-// On which side of each edge a pixel lies: at + across x + down y, which is negative outside. Also
-// of triangles that reach behind the camera (Olano and Greer, Graphics Hardware 1997).
+// On which side of each edge a pixel lies: at + across x + down y, which is negative outside, but for
+// drawn_slack(), so that rounding takes nothing away. Also of triangles that reach behind the camera
+// (Olano and Greer, Graphics Hardware 1997).
 struct Edges {
   vec3 at;
   vec3 across;
@@ -71,15 +72,14 @@ Edges edges_of(vec3 corners[3]) {
     edges.at[i] = normal.x * origin.x + normal.y * origin.y + normal.z +
                   1e-6 * length(from) * length(along);
   }
+  edges.at += drawn_slack() * (abs(edges.across) + abs(edges.down));
   return edges;
 }
 
-/// Whether the triangle may cover a pixel of the rectangle; a little more than it does, so that
-/// rounding takes nothing away.
+/// Whether the triangle may cover a pixel of the rectangle.
 bool may_cover(Edges edges, ivec2 first, ivec2 last) {
-  const vec3 slack = drawn_slack() * (abs(edges.across) + abs(edges.down));
   const vec3 most = edges.at + max(edges.across * float(first.x), edges.across * float(last.x)) +
-                    max(edges.down * float(first.y), edges.down * float(last.y)) + slack;
+                    max(edges.down * float(first.y), edges.down * float(last.y));
   return all(greaterThanEqual(most, vec3(0.0)));
 }
 

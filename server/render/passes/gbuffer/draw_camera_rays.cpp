@@ -1,9 +1,8 @@
 #include "render/passes/gbuffer/draw_camera_rays.hpp"
 
-#include <array>
-
 #include "render/passes/formats.hpp"
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
+#include "render/passes/gbuffer/walked_buffers.hpp"
 #include "shaders/embedded.hpp"
 #include "shaders/shared/drawn.h"
 
@@ -31,9 +30,7 @@ struct GBufferClearBindings {
 /// shaders/gbuffer/gbuffer_small.comp and gbuffer_large.comp: what they have in common.
 template <class Stage>
 struct DrawnTriangles {
-  gpu::ReadBuffer<Stage, glm::vec4> records;
-  gpu::ReadBuffer<Stage, glm::vec4> triangles;
-  gpu::ReadBuffer<Stage, std::uint32_t> alpha_heap;
+  WalkedBuffers<Stage> hierarchy;
   gpu::ReadWriteBuffer<Stage, std::uint64_t> nearest;
 };
 template <class Stage>
@@ -75,9 +72,7 @@ void draw_camera_rays(gpu::FramePlan& plan, const FrameInputs& in,
       camera_ray_capacity(extent.width, {0, static_cast<int>(extent.height)});
   const gpu::BufferRef nearest = plan.buffer("gbuffer.nearest", sizeof(std::uint64_t) * rays,
                                              formats::storage, gpu::Memory::device);
-  const DrawnTriangles<gpu::Declared> drawn{.records = plan.import(hierarchy.records),
-                                            .triangles = plan.import(hierarchy.triangles),
-                                            .alpha_heap = plan.import(hierarchy.alpha_heap),
+  const DrawnTriangles<gpu::Declared> drawn{.hierarchy = walked_buffers(plan, hierarchy),
                                             .nearest = nearest};
   const gpu::BufferRef parts =
       plan.buffer("gbuffer.parts", list_header + sizeof(shared::DrawnPart) * most_parts,

@@ -5,6 +5,7 @@
 #include "render/passes/formats.hpp"
 #include "render/passes/gbuffer/draw_camera_rays.hpp"
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
+#include "render/passes/gbuffer/walked_buffers.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "render/passes/section/section.hpp"
 #include "render/passes/shading/draw_shading.hpp"
@@ -18,9 +19,7 @@ namespace {
 struct Walk {
   bool layered;
   std::uint32_t features;
-  gpu::BufferRef records;
-  gpu::BufferRef triangles;
-  gpu::BufferRef alpha_heap;
+  WalkedBuffers<gpu::Declared> hierarchy;
   gpu::BufferRef hits;
   gpu::BufferRef previous_vertices;
   tracing::RayStream passed;  // rays that go on behind the first surface
@@ -29,9 +28,7 @@ struct Walk {
 /// shaders/gbuffer/gbuffer_trace.comp
 template <class Stage>
 struct GBufferTraceBindings {
-  gpu::ReadBuffer<Stage, glm::vec4> records;
-  gpu::ReadBuffer<Stage, glm::vec4> triangles;
-  gpu::ReadBuffer<Stage, std::uint32_t> alpha_heap;
+  WalkedBuffers<Stage> hierarchy;
   gpu::WriteBuffer<Stage, shared::Hit> hits;
 };
 
@@ -63,9 +60,7 @@ struct GBufferPassedBindings {
   kernels::RaySource<Stage> passed;
   gpu::ReadBuffer<Stage, shared::Vertex> previous_vertices;
   StoredSurfaces<Stage> surfaces;
-  gpu::ReadBuffer<Stage, glm::vec4> records;
-  gpu::ReadBuffer<Stage, glm::vec4> triangles;
-  gpu::ReadBuffer<Stage, std::uint32_t> alpha_heap;
+  WalkedBuffers<Stage> hierarchy;
 };
 struct GBufferPassedConstants {
   std::uint32_t root;
@@ -91,9 +86,7 @@ Walk declare_walk(gpu::FramePlan& plan, const FrameInputs& in,
   const std::uint32_t features = in.moving.features_without_emission();
   return {.layered = (features & shared::scene_layers) != 0,
           .features = features,
-          .records = plan.import(hierarchy.records),
-          .triangles = plan.import(hierarchy.triangles),
-          .alpha_heap = plan.import(hierarchy.alpha_heap),
+          .hierarchy = walked_buffers(plan, hierarchy),
           .hits = plan.buffer("gbuffer.hits", sizeof(shared::Hit) * capacity, formats::storage,
                               gpu::Memory::device),
           .previous_vertices = plan.import(in.moving.previous_vertices()),
@@ -103,10 +96,7 @@ Walk declare_walk(gpu::FramePlan& plan, const FrameInputs& in,
 void trace_first(gpu::FramePlan& plan, const FrameInputs& in, const Walk& walk,
                  const tracing::WalkedHierarchy& hierarchy) {
   plan.pass("gbuffer.trace", in.program(shaders::gbuffer_trace))
-      .bind<GBufferTraceBindings>({.records = walk.records,
-                                   .triangles = walk.triangles,
-                                   .alpha_heap = walk.alpha_heap,
-                                   .hits = walk.hits})
+      .bind<GBufferTraceBindings>({.hierarchy = walk.hierarchy, .hits = walk.hits})
       .constants(hierarchy.root)
       .early()
       .dispatch(gpu::each_pixel());
@@ -131,9 +121,7 @@ void find_passed(gpu::FramePlan& plan, const FrameInputs& in, const Walk& walk,
       .bind<GBufferPassedBindings>({.passed = ray_source(walk.passed),
                                     .previous_vertices = walk.previous_vertices,
                                     .surfaces = stored_surfaces(gbuffer, walk.layered),
-                                    .records = walk.records,
-                                    .triangles = walk.triangles,
-                                    .alpha_heap = walk.alpha_heap})
+                                    .hierarchy = walk.hierarchy})
       .constants([root = hierarchy.root, rounds] {
         return GBufferPassedConstants{root(), rounds};
       })
