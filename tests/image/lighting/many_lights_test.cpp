@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <random>
@@ -216,27 +217,39 @@ TEST(ManyLights, AMovingViewByTheGridIsNearlyAsSimilarToTheGroundTruth) {
   EXPECT_GT(by_grid, summed - 0.06);
 }
 
-/// Processor time of a moving frame, seconds: the least of a few.
-double frame_cost(const std::vector<scene::Light>& lights) {
-  const auto scene = courtyard();
-  scene->lights = lights;
-  RendererRig rig(scene, scene::constant_environment(glm::vec3(0.2f)), look({0, 9, 12}, {0, 0, 0}),
-                  320, 180);
-  double least = 1e9;
-  for (int i = 0; i < 40; ++i) {
-    rig.renderer.set_camera(look({0.02f * static_cast<float>(i), 9, 12}, {0, 0, 0}));
+/// A view of the courtyard with so many lights, and the processor time of its moving frames.
+struct LitView {
+  explicit LitView(int lights) : rig(lit_courtyard(lights), dim_sky(), camera(0), 320, 180) {}
+  static std::shared_ptr<const scene::Scene> lit_courtyard(int lights) {
+    const auto scene = courtyard();
+    scene->lights = unlimited_lights(lights);
+    return scene;
+  }
+  static scene::Environment dim_sky() { return scene::constant_environment(glm::vec3(0.2f)); }
+  static scene::Camera camera(int frame) {
+    return look({0.02f * static_cast<float>(frame), 9, 12}, {0, 0, 0});
+  }
+  /// @return seconds
+  double cost(int frame) {
+    rig.renderer.set_camera(camera(frame));
     const std::clock_t before = std::clock();
     rig.renderer.render();
-    const double cost = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
-    if (i >= 28) least = std::min(least, cost);
+    return static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
   }
-  return least;
-}
+  RendererRig rig;
+};
 
 TEST(ManyLights, CostHardlyGrowsWithTheirNumber) {
-  const double few = frame_cost(unlimited_lights(17)), many = frame_cost(unlimited_lights(1000));
-  RecordProperty("ratio", std::to_string(many / few));
-  EXPECT_LT(many, 1.5 * few);
+  LitView few(17), many(1000);
+  // By turns: what else the machine does meanwhile disturbs both alike.
+  std::vector<double> ratios;
+  for (int frame = 0; frame < 60; ++frame) {
+    const double cost = few.cost(frame), more = many.cost(frame);
+    if (frame >= 28) ratios.push_back(more / cost);
+  }
+  std::nth_element(ratios.begin(), ratios.begin() + 16, ratios.end());
+  RecordProperty("ratio", std::to_string(ratios[16]));
+  EXPECT_LT(ratios[16], 1.5);
 }
 
 }  // namespace

@@ -33,12 +33,13 @@ struct Gathered {
   double variance = 0.0;  // of one sample of a pixel, mean over pixels
 };
 
-/// What single samples bring, after the guide has learnt.
-Gathered samples_of(bool guided) {
+/// Adds what single samples bring, after the guide has learnt.
+void add_samples(Gathered& made, bool guided, std::uint32_t seed) {
   RendererRig rig(room_with_window(), scene::constant_environment(glm::vec3(4.0f)),
                   look({-1.5f, 1, -1.5f}, {0.5f, -0.5f, 1}, 75.0f), 64, 48);
   protocol::Settings settings;
   settings.accumulation.max_samples = 4096;
+  settings.sampling.seed = seed;
   settings.indirect.path_guiding = guided;
   rig.apply(settings);
   rig.accumulate(96);
@@ -53,17 +54,22 @@ Gathered samples_of(bool guided) {
       squares[p] += value * value / frames;
     }
   }
-  Gathered made;
   for (std::size_t p = 0; p < sums.size(); ++p) {
     made.mean += sums[p] / double(sums.size());
     made.variance += (squares[p] - sums[p] * sums[p]) / double(sums.size());
   }
-  return made;
 }
 
 TEST(PathGuiding, LowersTheVarianceOfLightThroughAWindow) {
-  const Gathered plain = samples_of(false), guided = samples_of(true);
-  EXPECT_NEAR(guided.mean / plain.mean, 1.0, 0.03);
+  // The cells of the radiance cache are noise that all pixels share: the means of one seed differ
+  // by 1.1 % (standard deviation of eight seeds).
+  Gathered plain, guided;
+  for (std::uint32_t seed = 0; seed < 6; ++seed) {
+    add_samples(plain, false, seed);
+    add_samples(guided, true, seed);
+  }
+  RecordProperty("ratio", std::to_string(guided.mean / plain.mean));
+  EXPECT_NEAR(guided.mean / plain.mean, 1.0, 0.02);
   EXPECT_LT(guided.variance, 0.6 * plain.variance);
 }
 
