@@ -74,6 +74,22 @@ bool drawn_elsewhere(uint slot) {
   return (floatBitsToUint(first.w) & bvh_again_bit) != 0u;
 }
 
+/// Whether the camera looks through the triangle from behind, as is_open() says: by more than what
+/// rounding of its places in the world may turn around. Of corners_from_eye().
+bool seen_from_behind(uint slot, vec3 corners[3]) {
+  const vec4 second = texelFetch(triangles, int(slot * bvh_texels_per_triangle) + 1);
+  if ((floatBitsToUint(second.w) & bvh_one_sided_bit) == 0u) return false;
+  const vec3 along = corners[1] - corners[0];
+  const vec3 beside = corners[2] - corners[0];
+  const vec3 normal = cross(along, beside);
+  const vec3 forward = -transpose(mat3(frame.view))[2];
+  const vec3 direction = enabled(frame_orthographic) ? forward : corners[0];
+  const vec3 far = abs(frame.eye.xyz) + max(abs(corners[0]), max(abs(corners[1]), abs(corners[2])));
+  const float rounding = 4e-7 * max(far.x, max(far.y, far.z));
+  return dot(normal, direction) > rounding * ((length(along) + length(beside)) * length(direction) +
+                                              length(normal));
+}
+
 // Parts that wait to be listed, so that a group counts them together.
 shared DrawnPart part_queue[128];
 shared uint parts_queued;
@@ -151,8 +167,10 @@ void main() {
   Edges edges;
   if (gl_GlobalInvocationID.x < slots && !drawn_elsewhere(slot)) {
     const vec3 corners[3] = corners_from_eye(slot);
-    covered = covered_pixels(corners);
-    edges = edges_of(corners);
+    if (!seen_from_behind(slot, corners)) {
+      covered = covered_pixels(corners);
+      edges = edges_of(corners);
+    }
   }
   const ivec2 size = max(covered.last - covered.first + 1, ivec2(0));
   const uint pixels = uint(size.x) * uint(size.y);

@@ -17,6 +17,9 @@ SHARED_CONSTANT uint bvh_leaf_count_shift = 26u;
 SHARED_CONSTANT uint bvh_leaf_count_mask = 7u;
 // Beside the number of a triangle: another leaf before has it too, where boxes were split.
 SHARED_CONSTANT uint bvh_again_bit = 0x80000000u;
+// Beside the number of its instance: the camera sees it only from where its corners appear
+// counter-clockwise.
+SHARED_CONSTANT uint bvh_one_sided_bit = 0x80000000u;
 // Nothing: the whole of an empty scene, and what lies at the bottom of the stack.
 SHARED_CONSTANT uint bvh_no_link = 0u;
 
@@ -65,7 +68,7 @@ struct BvhTriangle {
   vec3 corner0;
   uint triangle;  // number: index within the mesh; in the flat tree perhaps with bvh_again_bit
   vec3 corner1;
-  uint instance;  // in the flat tree, number: index among the scene's instances
+  uint instance;  // in the flat tree, number: index among the scene's instances; bvh_one_sided_bit
   vec3 corner2;
   uint mask;  // in the flat tree: as BvhInstance::mask
 };

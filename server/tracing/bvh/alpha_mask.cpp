@@ -59,7 +59,8 @@ Coverage coverage(const shared::Material& material) {
 
 bool cover_alike(std::span<const shared::Material> a, std::span<const shared::Material> b) {
   return std::ranges::equal(a, b, [](const shared::Material& one, const shared::Material& other) {
-    return coverage(one) == coverage(other) && coverage(one) != Coverage::masked;
+    const bool same_sides = ((one.flags ^ other.flags) & shared::material_double_sided) == 0;
+    return same_sides && coverage(one) == coverage(other) && coverage(one) != Coverage::masked;
   });
 }
 

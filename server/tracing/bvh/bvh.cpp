@@ -65,6 +65,13 @@ TriangleTree build_mesh(RTCDevice device, const scene::Mesh& mesh, const std::st
   return result;
 }
 
+/// Whether the camera does not see triangles from where their corners appear clockwise in the
+/// world: false where it might, and where a mirrored instance turns them around.
+bool is_one_sided(const shared::Material& material, const glm::mat4& world) {
+  const bool double_sided = (material.flags & shared::material_double_sided) != 0;
+  return !double_sided && glm::determinant(glm::mat3(world)) > 0.0f;
+}
+
 /// The triangles of flat instances, in world space.
 std::vector<shared::BvhTriangle> flat_triangles(const scene::Scene& scene, const Bvh& bvh) {
   std::vector<shared::BvhTriangle> triangles;
@@ -73,12 +80,14 @@ std::vector<shared::BvhTriangle> flat_triangles(const scene::Scene& scene, const
     const BvhMesh& traced = bvh.meshes[scene.instances[i].mesh];
     const glm::mat4& world = scene.nodes[scene.instances[i].node].world;
     if (!bvh.flat[i] || bvh.hidden[i] || !traced.covers || !traceable_inverse(world)) continue;
+    std::uint32_t instance = number(i);
+    if (is_one_sided(scene.materials[mesh.material], world)) instance |= shared::bvh_one_sided_bit;
     for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
       const auto [a, b, c] = corners(mesh, t);
       const auto moved = [&](const glm::vec3& at) {
         return glm::vec3(world * glm::vec4(at, 1.0f));
       };
-      triangles.push_back({moved(a), number(t), moved(b), number(i), moved(c), traced.mask});
+      triangles.push_back({moved(a), number(t), moved(b), instance, moved(c), traced.mask});
     }
   }
   return triangles;

@@ -118,10 +118,20 @@ std::shared_ptr<const scene::Scene> room() {
   return builder.build();
 }
 
+/// Rays meet backs that drawing leaves out.
+std::shared_ptr<const scene::Scene> double_sided(const scene::Scene& scene) {
+  auto copy = std::make_shared<scene::Scene>(scene);
+  for (shared::Material& material : copy->materials) {
+    material.flags |= shared::material_double_sided;
+  }
+  return copy;
+}
+
 TEST_F(DrawCameraRays, FindsWhatRaysHit) {
   for (const bool orthographic : {false, true}) {
     for (const auto& [name, scene] :
-         {std::pair("textured", textured_scene()), std::pair("transparent", transparent_scene())}) {
+         {std::pair("textured", double_sided(*textured_scene())),
+          std::pair("transparent", double_sided(*transparent_scene()))}) {
       scene::Camera camera = scene::fit_camera(scene->bounds, 40.0f, 1.5f);
       if (orthographic) camera.orthographic_height = 2.2f * scene->bounds.radius();
       TracedAndDrawn both(scene, camera, {150, 100});

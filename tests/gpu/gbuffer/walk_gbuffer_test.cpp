@@ -210,6 +210,37 @@ TEST(WalkGBuffer, DrawsManyTriangles) {
   EXPECT_EQ(both.draws(), device().atomics_64());
 }
 
+/// Spheres, one around the eye at the origin: all of its faces are seen from behind.
+std::shared_ptr<const scene::Scene> spheres_around_the_eye(bool mirrored) {
+  SceneBuilder builder;
+  const auto sphere = builder.add_sphere(1.0f, surface({0.2f, 0.8f, 0.3f}));
+  const auto around = glm::scale(glm::mat4(1.0f), glm::vec3(mirrored ? -0.5f : 0.5f, 0.5f, 0.5f));
+  builder.place(sphere, around);
+  for (int i = 0; i < 6; ++i) {
+    const glm::vec3 at(static_cast<float>(i % 3) - 1.0f, static_cast<float>(i / 3) - 0.5f, -4.0f);
+    builder.place(sphere, glm::scale(glm::translate(glm::mat4(1.0f), at), glm::vec3(0.5f)));
+  }
+  return builder.build();
+}
+
+TEST(WalkGBuffer, DrawsNoBacksOfOneSidedTriangles) {
+  for (const bool orthographic : {false, true}) {
+    for (const bool mirrored : {false, true}) {
+      scene::Camera camera = look({0, 0, 0}, {0.1f, 0, -1}, 45.0f);
+      if (orthographic) camera.orthographic_height = 3.0f;
+      RoundsAndWalk both(spheres_around_the_eye(mirrored), camera, {210, 140});
+      both.rig().set_view(camera, 3);
+      both.rig().run();
+      both.expect_equal(std::string(mirrored ? "mirrored" : "not mirrored") +
+                        (orthographic ? ", orthographic" : ", perspective"));
+      EXPECT_GT(both.covered(), 0.2);
+      if (both.draws()) {
+        EXPECT_EQ(both.passed() > 0, mirrored);
+      }
+    }
+  }
+}
+
 TEST(WalkGBuffer, FollowsAnimatedMeshes) {
   const char* assets = std::getenv("HELIOGRAPH_TEST_ASSETS");
   if (!assets) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";

@@ -202,6 +202,29 @@ TEST_F(BvhTest, EveryTriangleIsOnceTheFirst) {
   for (const auto& [triangle, count] : firsts) EXPECT_EQ(count, 1);
 }
 
+// gbuffer_small.comp leaves them out where the camera sees their backs.
+TEST_F(BvhTest, OneSidedTrianglesAreMarkedUnlessAMirrorTurnsThem) {
+  scene::Scene scene;
+  shared::Material both = plain_material();
+  both.flags |= shared::material_double_sided;
+  const std::uint32_t one_sided = add_mesh(scene, quad(), plain_material());
+  const std::uint32_t two_sided = add_mesh(scene, quad(), both);
+  const glm::mat4 mirrored = glm::scale(glm::mat4(1.0f), glm::vec3(-1, 1, 1));
+  place(scene, one_sided, glm::rotate(glm::mat4(1.0f), 2.0f, glm::vec3(1, 2, 3)));
+  place(scene, two_sided, glm::mat4(1.0f));
+  place(scene, one_sided, mirrored);
+  place(scene, one_sided, glm::scale(mirrored, glm::vec3(2, 2, -2)));
+  const Bvh bvh = build(scene, {});
+  const BvhMesh& tree = bvh.flat_tree;
+  ASSERT_GE(tree.triangles, 8u);
+  for (std::size_t i = tree.first_triangle; i < tree.first_triangle + tree.triangles; ++i) {
+    const std::uint32_t instance = triangle_at(bvh, i).instance;
+    const std::uint32_t number = instance & shared::bvh_number_mask;
+    EXPECT_EQ((instance & shared::bvh_one_sided_bit) != 0, number == 0 || number == 3) << number;
+    EXPECT_TRUE(std::isnormal(std::bit_cast<float>(instance)));
+  }
+}
+
 TEST_F(BvhTest, LargeCopiesStayInstances) {
   scene::Scene scene;
   const std::uint32_t copied = add_mesh(scene, sphere(8), plain_material());
