@@ -74,20 +74,17 @@ bool drawn_elsewhere(uint slot) {
   return (floatBitsToUint(first.w) & bvh_again_bit) != 0u;
 }
 
-/// Whether the camera looks through the triangle from behind, as is_open() says: by more than what
-/// rounding of its places in the world may turn around. Of corners_from_eye().
+/// Whether the camera is behind a triangle of one side, so that is_open() lets its rays through, by
+/// more than the errors of the triangle's normal and of its place. Of corners_from_eye().
 bool seen_from_behind(uint slot, vec3 corners[3]) {
   const vec4 second = texelFetch(triangles, int(slot * bvh_texels_per_triangle) + 1);
   if ((floatBitsToUint(second.w) & bvh_one_sided_bit) == 0u) return false;
-  const vec3 along = corners[1] - corners[0];
-  const vec3 beside = corners[2] - corners[0];
-  const vec3 normal = cross(along, beside);
+  const vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   const vec3 forward = -transpose(mat3(frame.view))[2];
-  const vec3 direction = enabled(frame_orthographic) ? forward : corners[0];
-  const vec3 far = abs(frame.eye.xyz) + max(abs(corners[0]), max(abs(corners[1]), abs(corners[2])));
-  const float rounding = 4e-7 * max(far.x, max(far.y, far.z));
-  return dot(normal, direction) > rounding * ((length(along) + length(beside)) * length(direction) +
-                                              length(normal));
+  const vec3 toward = enabled(frame_orthographic) ? forward : corners[0];
+  const float place_error = 4e-7 * (length(frame.eye.xyz) + length(corners[0]));
+  return dot(normal, toward) >
+         length(normal) * (1.5 * bvh_normal_error * length(toward) + place_error);
 }
 
 // Parts that wait to be listed, so that a group counts them together.

@@ -17,9 +17,10 @@ SHARED_CONSTANT uint bvh_leaf_count_shift = 26u;
 SHARED_CONSTANT uint bvh_leaf_count_mask = 7u;
 // Beside the number of a triangle: another leaf before has it too, where boxes were split.
 SHARED_CONSTANT uint bvh_again_bit = 0x80000000u;
-// Beside the number of its instance: the camera sees it only from where its corners appear
-// counter-clockwise.
+// Beside the number of a triangle's instance: the camera sees it only from where its corners appear
+// counter-clockwise. Its normal is right to bvh_normal_error radians.
 SHARED_CONSTANT uint bvh_one_sided_bit = 0x80000000u;
+SHARED_CONSTANT float bvh_normal_error = 0.004f;
 // Nothing: the whole of an empty scene, and what lies at the bottom of the stack.
 SHARED_CONSTANT uint bvh_no_link = 0u;
 
@@ -68,7 +69,8 @@ struct BvhTriangle {
   vec3 corner0;
   uint triangle;  // number: index within the mesh; in the flat tree perhaps with bvh_again_bit
   vec3 corner1;
-  uint instance;  // in the flat tree, number: index among the scene's instances; bvh_one_sided_bit
+  uint instance;  // in the flat tree, number: index among the scene's instances; perhaps with
+                  // bvh_one_sided_bit
   vec3 corner2;
   uint mask;  // in the flat tree: as BvhInstance::mask
 };

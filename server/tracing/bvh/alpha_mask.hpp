@@ -15,7 +15,7 @@ enum class Coverage { whole, masked, none };
 
 Coverage coverage(const shared::Material& material);
 /// Whether an acceleration structure of a scene with materials `a` is also one with `b`: rays meet
-/// the same, and look up no mask.
+/// the same, from the same sides, and look up no mask.
 bool cover_alike(std::span<const shared::Material> a, std::span<const shared::Material> b);
 
 /// A random number of a ray that decides which blended surfaces stop it, like ray_blending() in

@@ -65,11 +65,20 @@ TriangleTree build_mesh(RTCDevice device, const scene::Mesh& mesh, const std::st
   return result;
 }
 
-/// Whether the camera does not see triangles from where their corners appear clockwise in the
-/// world: false where it might, and where a mirrored instance turns them around.
+/// Whether the camera sees the instance's triangles only from where their corners appear
+/// counter-clockwise in the world. False is always safe: so it is where a mirror turns them.
 bool is_one_sided(const shared::Material& material, const glm::mat4& world) {
   const bool double_sided = (material.flags & shared::material_double_sided) != 0;
   return !double_sided && glm::determinant(glm::mat3(world)) > 0.0f;
+}
+
+/// Whether a triangle's rounded places in the world have the normal that shaders find from its
+/// places in the mesh: bvh_normal_error.
+bool keeps_normal(const Corners& in_mesh, const Corners& in_world, const glm::mat3& world) {
+  const auto& [a, b, c] = in_mesh;
+  const glm::vec3 exact = glm::cross(world * (b - a), world * (c - a));
+  const glm::vec3 rounded = glm::cross(in_world[1] - in_world[0], in_world[2] - in_world[0]);
+  return glm::distance(glm::normalize(exact), glm::normalize(rounded)) < shared::bvh_normal_error;
 }
 
 /// The triangles of flat instances, in world space.
@@ -80,14 +89,18 @@ std::vector<shared::BvhTriangle> flat_triangles(const scene::Scene& scene, const
     const BvhMesh& traced = bvh.meshes[scene.instances[i].mesh];
     const glm::mat4& world = scene.nodes[scene.instances[i].node].world;
     if (!bvh.flat[i] || bvh.hidden[i] || !traced.covers || !traceable_inverse(world)) continue;
-    std::uint32_t instance = number(i);
-    if (is_one_sided(scene.materials[mesh.material], world)) instance |= shared::bvh_one_sided_bit;
+    const bool one_sided = is_one_sided(scene.materials[mesh.material], world);
     for (std::size_t t = 0; t < mesh.indices.size() / 3; ++t) {
-      const auto [a, b, c] = corners(mesh, t);
-      const auto moved = [&](const glm::vec3& at) {
-        return glm::vec3(world * glm::vec4(at, 1.0f));
-      };
-      triangles.push_back({moved(a), number(t), moved(b), instance, moved(c), traced.mask});
+      const Corners in_mesh = corners(mesh, t);
+      Corners at;
+      std::ranges::transform(in_mesh, at.begin(), [&](const glm::vec3& corner) {
+        return glm::vec3(world * glm::vec4(corner, 1.0f));
+      });
+      std::uint32_t instance = number(i);
+      if (one_sided && keeps_normal(in_mesh, at, glm::mat3(world))) {
+        instance |= shared::bvh_one_sided_bit;
+      }
+      triangles.push_back({at[0], number(t), at[1], instance, at[2], traced.mask});
     }
   }
   return triangles;

@@ -209,8 +209,8 @@ TEST_F(DrawCameraRays, TracesFramesWithTooManyParts) {
 TEST_F(DrawCameraRays, TracesInstancesThatMove) {
   const char* assets = std::getenv("HELIOGRAPH_TEST_ASSETS");
   if (!assets) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";
-  const auto scene = std::make_shared<const scene::Scene>(
-      scene::import_gltf(std::filesystem::path(assets) / "gltf" / "BoxAnimated.glb"));
+  const auto scene =
+      double_sided(scene::import_gltf(std::filesystem::path(assets) / "gltf" / "BoxAnimated.glb"));
   const scene::Camera camera = scene::fit_camera(scene->bounds, 40.0f, 1.5f);
   TracedAndDrawn both(scene, camera, {120, 80});
   EXPECT_GT(both.flat().count, 0u);

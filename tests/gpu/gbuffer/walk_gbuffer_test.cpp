@@ -210,15 +210,17 @@ TEST(WalkGBuffer, DrawsManyTriangles) {
   EXPECT_EQ(both.draws(), device().atomics_64());
 }
 
-/// Spheres, one around the eye at the origin: all of its faces are seen from behind.
+/// Spheres, every other one mirrored, and one around the eye at the origin: all of its faces are
+/// seen from behind.
 std::shared_ptr<const scene::Scene> spheres_around_the_eye(bool mirrored) {
   SceneBuilder builder;
   const auto sphere = builder.add_sphere(1.0f, surface({0.2f, 0.8f, 0.3f}));
-  const auto around = glm::scale(glm::mat4(1.0f), glm::vec3(mirrored ? -0.5f : 0.5f, 0.5f, 0.5f));
-  builder.place(sphere, around);
+  const glm::vec3 straight(0.5f), turned(-0.5f, 0.5f, 0.5f);
+  builder.place(sphere, glm::scale(glm::mat4(1.0f), mirrored ? turned : straight));
   for (int i = 0; i < 6; ++i) {
     const glm::vec3 at(static_cast<float>(i % 3) - 1.0f, static_cast<float>(i / 3) - 0.5f, -4.0f);
-    builder.place(sphere, glm::scale(glm::translate(glm::mat4(1.0f), at), glm::vec3(0.5f)));
+    builder.place(sphere,
+                  glm::scale(glm::translate(glm::mat4(1.0f), at), i % 2 == 0 ? straight : turned));
   }
   return builder.build();
 }
@@ -239,6 +241,16 @@ TEST(WalkGBuffer, DrawsNoBacksOfOneSidedTriangles) {
       }
     }
   }
+}
+
+// Unlike in rounds, whose fourth surface is stored.
+TEST(WalkGBuffer, DrawsNoBacksHoweverManyThereAre) {
+  constexpr int panes = 60;
+  RoundsAndWalk both(panes_seen_from_behind(panes), look({0, 0, 40}, {0, 0, 0}, 5.0f), {64, 64});
+  both.rig().run();
+  if (!both.draws()) GTEST_SKIP() << "camera rays are not drawn";
+  EXPECT_EQ(both.shown_in_middle(), static_cast<float>(panes + 1)) << "the wall";
+  EXPECT_EQ(both.passed(), 0u);
 }
 
 TEST(WalkGBuffer, FollowsAnimatedMeshes) {

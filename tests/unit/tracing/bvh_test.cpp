@@ -225,6 +225,27 @@ TEST_F(BvhTest, OneSidedTrianglesAreMarkedUnlessAMirrorTurnsThem) {
   }
 }
 
+// Half a metre of rounding turns a quad of two metres.
+TEST_F(BvhTest, TrianglesThatRoundingTurnsAreNotMarked) {
+  scene::Scene scene;
+  scene::Mesh far = quad();
+  const glm::vec3 away(4000000.1f, 3000000.3f, 5000000.7f);
+  for (shared::Vertex& vertex : far.vertices) vertex.position += away;
+  const glm::mat4 turned = glm::rotate(glm::mat4(1.0f), 1.0f, glm::vec3(1, 2, 3));
+  place(scene, add_mesh(scene, far, plain_material()), glm::translate(turned, -away));
+  place(scene, add_mesh(scene, quad(), plain_material()), turned);
+  const Bvh bvh = build(scene, {});
+  const BvhMesh& tree = bvh.flat_tree;
+  int marked = 0;
+  for (std::size_t i = tree.first_triangle; i < tree.first_triangle + tree.triangles; ++i) {
+    const std::uint32_t instance = triangle_at(bvh, i).instance;
+    if ((instance & shared::bvh_one_sided_bit) == 0) continue;
+    EXPECT_EQ(instance & shared::bvh_number_mask, 1u);
+    ++marked;
+  }
+  EXPECT_GE(marked, 2);
+}
+
 TEST_F(BvhTest, LargeCopiesStayInstances) {
   scene::Scene scene;
   const std::uint32_t copied = add_mesh(scene, sphere(8), plain_material());

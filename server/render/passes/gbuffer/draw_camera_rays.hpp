@@ -5,8 +5,8 @@
 
 namespace heliograph::render {
 
-/// Adds the passes that write shared::Hit for the camera rays of all pixels, as `gbuffer.trace`
-/// does, without tracing what does not move: triangles of the hierarchy's flat tree are drawn by
+/// Adds the passes that write shared::Hit for the camera rays of all pixels, like `gbuffer.trace`,
+/// without tracing what does not move: triangles of the hierarchy's flat tree are drawn by
 /// compute shaders, each intersected with the rays of the pixels that it covers, and the nearest
 /// stays (Laine and Karras, HPG 2011; small ones by an invocation each, as Karis et al., SIGGRAPH
 /// 2021). Backs of one-sided triangles, which camera rays go on through, are left out where no
