@@ -80,7 +80,7 @@ bool seen_from_behind(uint slot, vec3 corners[3]) {
   const vec4 second = texelFetch(triangles, int(slot * bvh_texels_per_triangle) + 1);
   if ((floatBitsToUint(second.w) & bvh_one_sided_bit) == 0u) return false;
   const vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
-  const vec3 forward = -transpose(mat3(frame.view))[2];
+  const vec3 forward = -frame.inverse_view[2].xyz;
   const vec3 toward = enabled(frame_orthographic) ? forward : corners[0];
   const float place_error = 4e-7 * (length(frame.eye.xyz) + length(corners[0]));
   return dot(normal, toward) >

@@ -28,6 +28,7 @@ std::shared_ptr<const scene::Scene> room_with_window() {
   return builder.build();
 }
 
+/// Sums over seeds.
 struct Gathered {
   double mean = 0.0;
   double variance = 0.0;  // of one sample of a pixel, mean over pixels

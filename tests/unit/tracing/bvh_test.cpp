@@ -9,6 +9,7 @@
 #include <limits>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include "tests/support/traced_scene.hpp"
 
@@ -44,6 +45,15 @@ shared::BvhTriangle triangle_at(const Bvh& bvh, std::size_t index) {
   std::array<glm::vec4, 3> texels;
   for (std::size_t i = 0; i < 3; ++i) texels[i] = bvh.triangles[3 * index + i];
   return std::bit_cast<shared::BvhTriangle>(texels);
+}
+
+/// In the order of its leaves.
+std::vector<shared::BvhTriangle> triangles_of(const Bvh& bvh, const BvhMesh& tree) {
+  std::vector<shared::BvhTriangle> all;
+  for (std::size_t i = 0; i < tree.triangles; ++i) {
+    all.push_back(triangle_at(bvh, tree.first_triangle + i));
+  }
+  return all;
 }
 
 /// Visits all nodes under `link`, checks that boxes contain their subtree, and counts triangles.
@@ -140,9 +150,7 @@ TEST_F(BvhTest, TheLargerChildComesFirst) {
 /// places in the world.
 void check_flat(const Bvh& bvh, const scene::Scene& scene) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, shared::BvhTriangle> seen;
-  const BvhMesh& tree = bvh.flat_tree;
-  for (std::size_t i = tree.first_triangle; i < tree.first_triangle + tree.triangles; ++i) {
-    const shared::BvhTriangle triangle = triangle_at(bvh, i);
+  for (const shared::BvhTriangle& triangle : triangles_of(bvh, bvh.flat_tree)) {
     seen[{triangle.instance & shared::bvh_number_mask,
           triangle.triangle & shared::bvh_number_mask}] = triangle;
   }
@@ -192,13 +200,11 @@ TEST_F(BvhTest, EveryTriangleIsOnceTheFirst) {
   }
   const Bvh bvh = build(scene, {});
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> firsts;
-  const BvhMesh& tree = bvh.flat_tree;
-  for (std::size_t i = tree.first_triangle; i < tree.first_triangle + tree.triangles; ++i) {
-    const shared::BvhTriangle triangle = triangle_at(bvh, i);
+  for (const shared::BvhTriangle& triangle : triangles_of(bvh, bvh.flat_tree)) {
     firsts[{triangle.instance, triangle.triangle & shared::bvh_number_mask}] +=
         (triangle.triangle & shared::bvh_again_bit) == 0;
   }
-  EXPECT_GT(tree.triangles, firsts.size()) << "none is split";
+  EXPECT_GT(bvh.flat_tree.triangles, firsts.size()) << "none is split";
   for (const auto& [triangle, count] : firsts) EXPECT_EQ(count, 1);
 }
 
@@ -215,10 +221,9 @@ TEST_F(BvhTest, OneSidedTrianglesAreMarkedUnlessAMirrorTurnsThem) {
   place(scene, one_sided, mirrored);
   place(scene, one_sided, glm::scale(mirrored, glm::vec3(2, 2, -2)));
   const Bvh bvh = build(scene, {});
-  const BvhMesh& tree = bvh.flat_tree;
-  ASSERT_GE(tree.triangles, 8u);
-  for (std::size_t i = tree.first_triangle; i < tree.first_triangle + tree.triangles; ++i) {
-    const std::uint32_t instance = triangle_at(bvh, i).instance;
+  ASSERT_GE(bvh.flat_tree.triangles, 8u);
+  for (const shared::BvhTriangle& triangle : triangles_of(bvh, bvh.flat_tree)) {
+    const std::uint32_t instance = triangle.instance;
     const std::uint32_t number = instance & shared::bvh_number_mask;
     EXPECT_EQ((instance & shared::bvh_one_sided_bit) != 0, number == 0 || number == 3) << number;
     EXPECT_TRUE(std::isnormal(std::bit_cast<float>(instance)));
@@ -235,12 +240,10 @@ TEST_F(BvhTest, TrianglesThatRoundingTurnsAreNotMarked) {
   place(scene, add_mesh(scene, far, plain_material()), glm::translate(turned, -away));
   place(scene, add_mesh(scene, quad(), plain_material()), turned);
   const Bvh bvh = build(scene, {});
-  const BvhMesh& tree = bvh.flat_tree;
   int marked = 0;
-  for (std::size_t i = tree.first_triangle; i < tree.first_triangle + tree.triangles; ++i) {
-    const std::uint32_t instance = triangle_at(bvh, i).instance;
-    if ((instance & shared::bvh_one_sided_bit) == 0) continue;
-    EXPECT_EQ(instance & shared::bvh_number_mask, 1u);
+  for (const shared::BvhTriangle& triangle : triangles_of(bvh, bvh.flat_tree)) {
+    if ((triangle.instance & shared::bvh_one_sided_bit) == 0) continue;
+    EXPECT_EQ(triangle.instance & shared::bvh_number_mask, 1u);
     ++marked;
   }
   EXPECT_GE(marked, 2);
