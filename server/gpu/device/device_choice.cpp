@@ -10,6 +10,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "gpu/device/queues.hpp"
 #include "gpu/device/several_devices.hpp"
 
 namespace heliograph::gpu {

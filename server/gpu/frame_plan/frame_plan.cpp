@@ -200,6 +200,8 @@ bool FramePlan::is_history(ImageRef image) const {
 }
 
 void FramePlan::compile() {
+  make_programs();
+  order_passes();
   device_.submit_once([this](VkCommandBuffer commands) {
     setup_ = commands;
     make_histories();
@@ -207,17 +209,7 @@ void FramePlan::compile() {
     make_resources();
   });
   setup_ = VK_NULL_HANDLE;
-  for (Pass& pass : passes_) {
-    if (pass.is_host_only()) {
-      pass.program = nullptr;
-    } else if (pass.make_program) {
-      const ComputeProgram& program = pass.make_program();
-      pass.program = &program;
-      pass.local_size = program.local_size();
-    }
-    check_pass(pass);
-  }
-  order_passes();
+  for (const Pass& pass : passes_) check_pass(pass);
   list_views();
   make_descriptor_sets();
   make_command_buffers();
@@ -233,6 +225,18 @@ void FramePlan::compile() {
   compiled_ = true;
 }
 
+void FramePlan::make_programs() {
+  for (Pass& pass : passes_) {
+    if (pass.is_host_only()) {
+      pass.program = nullptr;
+    } else if (pass.make_program) {
+      const ComputeProgram& program = pass.make_program();
+      pass.program = &program;
+      pass.local_size = program.local_size();
+    }
+  }
+}
+
 void FramePlan::make_command_buffers() {
   draws_ = std::ranges::any_of(passes_, &Pass::is_raster);
   VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
@@ -240,7 +244,7 @@ void FramePlan::make_command_buffers() {
   pool.flags = VK_COMMAND_POOL_CREATE_RESET_COMMAND_BUFFER_BIT;
   check(vkCreateCommandPool(device_.handle(), &pool, nullptr, &command_pool_),
         "create a command pool");
-  std::uint32_t submits = 3;
+  std::uint32_t submits = 4;
   for (const Pass& pass : passes_) {
     submits += timed_by_clock() || pass.is_host_only() ? 1 : 0;
   }
@@ -304,13 +308,20 @@ const Image& FramePlan::get(ImageRef image) const {
   return physical(image.index, parity_);
 }
 const Image& FramePlan::latest(ImageRef image) const {
-  return physical(image.index, finished_);
+  return physical(image.index, slot_of_latest(resources_[image.index]));
 }
 const Buffer& FramePlan::get(BufferRef buffer) const {
   return *resources_[buffer.index].buffers[parity_];
 }
 const Buffer& FramePlan::latest(BufferRef buffer) const {
-  return *resources_[buffer.index].buffers[finished_];
+  return *resources_[buffer.index].buffers[slot_of_latest(resources_[buffer.index])];
+}
+
+std::uint32_t FramePlan::slot_of_latest(const Resource& resource) const {
+  const auto& [even, odd] = resource.written;
+  if (!resource.doubled || std::max(even, odd) == 0) return finished_;
+  if (std::max(even, odd) > finished_frame_) return even < odd ? 0 : 1;
+  return even < odd ? 1 : 0;
 }
 
 std::vector<std::uint8_t> FramePlan::read() {

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <atomic>
 #include <chrono>
-#include <cstring>
 #include <deque>
 #include <functional>
 #include <memory>
@@ -13,12 +11,11 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <vector>
 
 #include "gpu/frame_plan/bindings.hpp"
-#include "gpu/frame_plan/frame_size.hpp"
-#include "gpu/frame_plan/pass_order.hpp"
+#include "gpu/frame_plan/frame_overlap.hpp"
+#include "gpu/frame_plan/pass_builder.hpp"
 #include "gpu/memory/readback.hpp"
 #include "gpu/pipelines/ray_pipeline.hpp"
 #include "gpu/pipelines/shader.hpp"
@@ -45,124 +42,18 @@ struct PassTiming {
   float milliseconds = 0.0f;
 };
 
-/// Most resources that one pass binds, and most bytes of push constants.
-inline constexpr std::size_t most_bindings = 24;
-inline constexpr std::size_t most_constants = 128;
-
 /// A compute program that is made when a plan needs it: not where a host kernel does the work.
 using ProgramSource = std::function<const ComputeProgram&()>;
 
-class FramePlan;
 struct Lifetime;
-
-/// One pass under construction. Its resources bind, in the order given, to the shader's pass set in
-/// ascending binding order.
-class PassBuilder {
- public:
-  PassBuilder& read(ImageRef image) { return use({image.index, Access::read}); }
-  PassBuilder& read(BufferRef buffer) { return use({buffer.index, Access::read}); }
-  PassBuilder& write(ImageRef image) { return use({image.index, Access::write}); }
-  PassBuilder& write(BufferRef buffer) { return use({buffer.index, Access::write}); }
-  PassBuilder& read_write(ImageRef image) { return use({image.index, Access::read_write}); }
-  PassBuilder& read_write(BufferRef buffer) { return use({buffer.index, Access::read_write}); }
-
-  /// All resources of the pass by name: `.bind<BlurBindings>({.guide = ..., .signal = ...})`.
-  template <template <class> class Bindings>
-  PassBuilder& bind(const Bindings<Declared>& bindings) {
-    static_assert(binding_count<Bindings> <= most_bindings);
-    return use_list(&bindings_tag<Bindings>, uses_of<Bindings>(bindings));
-  }
-
-  /// Push constants: a value, or a function that is called in every frame.
-  template <typename Source>
-  PassBuilder& constants(Source source) {
-    if constexpr (std::is_invocable_v<Source>) {
-      using Value = std::invoke_result_t<Source>;
-      static_assert(std::is_trivially_copyable_v<Value> && sizeof(Value) <= most_constants);
-      return set_constants(sizeof(Value), [source](std::byte* bytes) {
-        const Value value = source();
-        std::memcpy(bytes, &value, sizeof(Value));
-      });
-    } else {
-      return constants([source] { return source; });
-    }
-  }
-
-  /// Colour attachments in location order, cleared to `clear`, or kept when there is none.
-  PassBuilder& color(ImageRef image, std::optional<std::array<float, 4>> clear);
-  PassBuilder& depth(ImageRef image, float clear);
-
-  /// Threads of each layer: each_pixel(), or as many as there are elements.
-  PassBuilder& dispatch(FrameSize threads, std::uint32_t layers = 1);
-  /// Groups from a VkDispatchIndirectCommand at `offset` of a buffer, which counts as read.
-  PassBuilder& dispatch_indirect(BufferRef groups, VkDeviceSize offset);
-  /// One invocation of a ray tracing pipeline's generation stage per element.
-  PassBuilder& launch(std::uint32_t rays);
-  /// Draw calls of a raster pass; the pipeline and shared sets are bound.
-  PassBuilder& draw(std::function<void(VkCommandBuffer, VkPipelineLayout)> record);
-  /// The pass is skipped in frames where this is false.
-  PassBuilder& when(std::function<bool()> condition);
-  /// A frame that begins while the device works on the one before may run the pass during the end
-  /// of that one, on another queue. It reads nothing that passes write, and writes no history.
-  PassBuilder& early();
-
-  /// The same computation as the shader's by the host's processors, which a plan with host kernels
-  /// runs in its place. `kernel` is a function or a lambda that takes a `const HostPass<...>&` of
-  /// the list given to bind() and of the type given to constants().
-  template <class Kernel>
-  PassBuilder& host(Kernel kernel) {
-    return run_on_host(std::function(std::move(kernel)));
-  }
-  /// A kernel whose job holds `inputs` besides the pass. They outlive the plan.
-  template <class Job, class... Inputs>
-  PassBuilder& host(void (*kernel)(const Job&), const Inputs&... inputs) {
-    return host([kernel, &inputs...](const typename Job::Pass& pass) {
-      kernel({pass, inputs...});
-    });
-  }
-  /// Restricts host(): the shader runs where the kernel does not know the case, as decided
-  /// when the pass is declared or in every frame.
-  PassBuilder& host_when(bool known);
-  PassBuilder& host_when(std::function<bool()> known);
-
- private:
-  friend class FramePlan;
-  /// Views of the list's resources, bytes of the constants, the size that is drawn.
-  using HostRun =
-      std::function<void(std::span<const HostView>, std::span<const std::byte>, VkExtent2D)>;
-
-  PassBuilder(FramePlan& plan, std::size_t pass) : plan_(plan), pass_(pass) {}
-  PassBuilder& use(Use use);
-  PassBuilder& use_list(const char* tag, std::span<const Use> uses);
-  PassBuilder& set_constants(std::size_t size, std::function<void(std::byte*)> fill);
-  PassBuilder& set_host(const char* tag, std::size_t constants_size, HostRun run);
-
-  template <template <class> class Bindings, class Constants>
-  PassBuilder& run_on_host(std::function<void(const HostPass<Bindings, Constants>&)> kernel) {
-    constexpr std::size_t size = std::is_empty_v<Constants> ? 0 : sizeof(Constants);
-    return set_host(
-        &bindings_tag<Bindings>, size,
-        [kernel = std::move(kernel)](std::span<const HostView> views,
-                                     std::span<const std::byte> constants, VkExtent2D extent) {
-          HostViews<Bindings> all;
-          std::copy_n(views.begin(), all.size(), all.begin());
-          Constants value{};
-          std::memcpy(&value, constants.data(), size);
-          kernel({map_bindings<Bindings>(all), value, static_cast<int>(extent.width),
-                  static_cast<int>(extent.height)});
-        });
-  }
-
-  FramePlan& plan_;
-  std::size_t pass_;
-};
 
 /// An ordered list of passes with what each reads and writes, from which barriers, timestamps,
 /// labels, descriptor sets, the list of views and the history swap follow. Passes run in the order
 /// declared on devices that are processors; others work on all passes at a time that need nothing
-/// of each other. Images stay in GENERAL. A host pass runs on the processor after everything before
-/// it is done; on a CPU device it sees images and buffers through their mapping. Work goes to the
-/// device when a host pass or the caller waits for it: a frame of host passes alone submits
+/// of each other, also on those at the end of one frame and at the start of the next
+/// (overlap_frames). Images stay in GENERAL. A host pass runs on the processor after everything
+/// before it is done; on a CPU device it sees images and buffers through their mapping. Work goes
+/// to the device when a host pass or the caller waits for it: a frame of host passes alone submits
 /// nothing.
 class FramePlan {
  public:
@@ -282,6 +173,9 @@ class FramePlan {
   /// next is not one of those that are timed. What the device reads, the host may not change then,
   /// but for what is there for each slot().
   bool can_begin_another() const;
+  /// The part of its time after which the device can work on another frame beside the one that has
+  /// begun first, from when the frame before that was done; 1: not before its end.
+  float part_before_next() const;
   /// The second part: waits for the device to finish the frame that has begun first.
   void finish();
   /// Whether the device may still work on a frame that has begun.
@@ -363,8 +257,15 @@ class FramePlan {
   bool run_passes();
   void run_host_kernel(const Pass& pass) const;
   void check_pass(const Pass& pass) const;
+  void make_programs();
   void order_passes();
-  void divide(std::span<const PassUses> passes);
+  /// As the frame before left them, by number; and which of them are the same, with their uses.
+  std::vector<FrameResource> frame_resources() const;
+  std::vector<PassUses> pass_uses() const;
+  bool can_be_doubled(std::uint32_t index) const;
+  /// Of the newest finished frame that has written it.
+  std::uint32_t slot_of_latest(const Resource& resource) const;
+  float time_of(std::size_t first, std::size_t last) const;
   void make_descriptor_sets();
   void make_command_buffers();
   /// For the frame that begins: always of one family.
@@ -423,11 +324,15 @@ class FramePlan {
   std::optional<Submission> submitted_;    // what was last submitted and not waited for
   std::optional<Submission> wait_first_;   // of the frame before, by the next submit
   std::optional<Submission> closed_;       // of this frame, as Begun has it
+  std::uint64_t frame_ = 0;                // number of the frame that has begun last, from 1
+  std::uint64_t finished_frame_ = 0;       // of the one that was finished last
   /// A frame that has begun.
   struct Begun {
     std::optional<Submission> submitted;  // its last work for the device
-    std::optional<Submission> closed;     // the last that uses what its early passes write
+    std::optional<Submission> closed;     // behind it the next frame may begin
+    std::uint64_t frame = 0;              // its number
     std::uint32_t slot = 0;
+    bool follows = false;  // its early passes ran beside the frame before
     bool came_back = false;
     bool timed = false;
   };

@@ -1,4 +1,4 @@
-// What follows from declared reads and writes before anything runs: checks, order, views.
+// What follows from declared reads and writes before anything runs: checks and views.
 
 #include <algorithm>
 #include <cstring>
@@ -114,45 +114,6 @@ void FramePlan::check_pass(const Pass& pass) const {
   if (pass.is_raster && pass.colors.empty() && !pass.depth) fail("it has no attachment");
 }
 
-void FramePlan::order_passes() {
-  // What is imported twice is one resource.
-  std::map<std::pair<const Image*, const Buffer*>, std::uint32_t> known;
-  const auto physical = [&](Use use) {
-    const Resource& resource = resources_[use.resource];
-    use.resource =
-        known.try_emplace({resource.images[0], resource.buffers[0]}, use.resource).first->second;
-    return use;
-  };
-  std::vector<PassUses> all;
-  for (const Pass& pass : passes_) {
-    std::vector<Use> uses = pass.all_uses();
-    std::ranges::transform(uses, uses.begin(), physical);
-    all.push_back({std::move(uses), pass.program == nullptr, pass.early});
-  }
-  // Where every pass is a submit of its own, there is nothing to overlap.
-  order_ = timed_by_clock() ? declared_order(all) : overlapping_order(all);
-  divide(all);
-}
-
-void FramePlan::divide(std::span<const PassUses> passes) {
-  parts_ = {};
-  if (timed_by_clock()) return;
-  parts_ = divide_frame(order_, passes);
-  std::optional<std::uint32_t> refused = read_too_early(order_, passes);
-  for (std::size_t i = 0; i < parts_.early && !refused; ++i) {
-    for (const Use& use : passes[order_.passes[i]].uses) {
-      const bool comes_back = writes(use) && use.resource == read_back_.index;
-      if (comes_back || resources_[use.resource].part != Resource::Part::none) {
-        refused = use.resource;
-      }
-    }
-  }
-  if (refused) {
-    throw GpuError("early passes use \"" + resources_[*refused].name +
-                   "\", which the frame before may use at its end");
-  }
-}
-
 std::vector<std::string> FramePlan::barriers() const {
   std::vector<std::string> names;
   for (const std::uint32_t pass : order_.passes) {
@@ -186,7 +147,8 @@ std::vector<PassWork> FramePlan::work() const {
         const std::uint64_t texels = std::uint64_t{desc.extent.width} * desc.extent.height;
         work.image_bytes += texels * texel_bytes(desc.format) * (reads(use) + writes(use));
       } else if (work.entries == 0 && resource.name.ends_with(".ray_count")) {
-        const auto count = download_buffer(device_, *resource.buffers[0], sizeof(std::uint32_t));
+        const auto count =
+            download_buffer(device_, *resource.buffers[finished_], sizeof(std::uint32_t));
         std::uint32_t entries = 0;
         std::memcpy(&entries, count.data(), sizeof entries);
         work.entries = entries;

@@ -48,10 +48,12 @@ bool FramePlan::begin(const std::function<bool()>& canceled) {
   canceled_ = false;
   // Where passes are timed by the clock, nothing is recorded that was not submitted.
   asks_canceled_ = canceled && timed_by_clock() ? &canceled : nullptr;
+  ++frame_;
   // Without early passes, two frames run one after the other on one queue.
-  if (begun_.empty() || parts_.early > 0) queue_ = choose_queue();
+  const bool overlaps = !begun_.empty() && parts_.early > 0;
+  if (begun_.empty() || overlaps) queue_ = choose_queue();
   closed_.reset();
-  if (!begun_.empty() && parts_.early > 0) {
+  if (overlaps) {
     const Begun& before = begun_.front();
     wait_first_ = before.timed ? before.submitted : before.closed;  // passes are timed alone
   }
@@ -65,7 +67,9 @@ bool FramePlan::begin(const std::function<bool()>& canceled) {
   const auto last = std::exchange(submitted_, std::nullopt);
   begun_.push_back({.submitted = last,
                     .closed = closed_ ? closed_ : last,
+                    .frame = frame_,
                     .slot = parity_,
+                    .follows = overlaps,
                     .came_back = comes_back,
                     .timed = times_passes_});
   parity_ ^= 1;
@@ -80,6 +84,22 @@ bool FramePlan::can_begin_another() const {
   return begun_.size() == 1 && in_flight() && frames_since_timed_ < timed_frame_interval;
 }
 
+float FramePlan::part_before_next() const {
+  if (parts_.early == 0 || begun_.empty() || begun_.front().timed) return 1.0f;
+  const float all = time_of(0, passes_.size());
+  if (all <= 0.0f) return 1.0f;
+  return time_of(begun_.front().follows ? parts_.early : 0, parts_.closed) / all;
+}
+
+/// Milliseconds, of the passes at these places of the order that ran.
+float FramePlan::time_of(std::size_t first, std::size_t last) const {
+  float all = 0.0f;
+  for (std::size_t place = first; place < last; ++place) {
+    all += std::max(timings_[order_.passes[place]].milliseconds, 0.0f);
+  }
+  return all;
+}
+
 void FramePlan::finish() {
   if (begun_.empty()) throw GpuError("a frame is finished that has not begun");
   const Begun begun = begun_.front();
@@ -87,6 +107,7 @@ void FramePlan::finish() {
   if (begun.submitted) device_.wait(*begun.submitted);
   if (begun.timed) read_timers();
   finished_ = begun.slot;
+  finished_frame_ = begun.frame;
   came_back_ = begun.came_back;
 }
 
@@ -140,6 +161,7 @@ bool FramePlan::run_passes() {
       barrier |= !pass.program;
       continue;
     }
+    for (const std::uint32_t index : pass.doubled) resources_[index].written[parity_] = frame_;
     const bool on_host = pass.runs_on_host();
     timings_[i].host = on_host;
     const auto start = Clock::now();
@@ -149,7 +171,7 @@ bool FramePlan::run_passes() {
       record(pass, recorder(), i * 2);
       if (!timed_by_clock()) {
         timings_[i].milliseconds = measured_[i];
-        if (++recorded == passes_submitted_first && parts_.early == 0) submit();
+        if (++recorded == passes_submitted_first) submit();
         continue;
       }
     }

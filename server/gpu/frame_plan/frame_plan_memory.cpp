@@ -28,7 +28,7 @@ VkMemoryRequirements requirements_of(const Device& device, const Resource& resou
 }  // namespace
 
 void FramePlan::make(Resource& resource, const std::array<MemoryPlace, 2>& places) const {
-  const bool same = places[0].block == places[1].block;
+  const bool same = places[0].block == places[1].block && places[0].offset == places[1].offset;
   for (std::size_t parity = 0; parity < 2; ++parity) {
     auto& image = resource.owned_images[parity];
     auto& buffer = resource.owned_buffers[parity];
@@ -204,7 +204,7 @@ void FramePlan::make_in_blocks() {
   if (shares_memory_) return;
   struct Group {
     std::vector<std::uint32_t> resources;
-    std::vector<Lifetime> needed;  // one for each, two for a history
+    std::vector<Lifetime> needed;  // one for each, two for a history and for what is doubled
     VkMemoryRequirements all{};
   };
   std::map<std::pair<bool, std::uint32_t>, Group> groups;  // images or buffers, types of memory
@@ -216,7 +216,8 @@ void FramePlan::make_in_blocks() {
     const VkMemoryRequirements needed = requirements_of(device_, resource);
     Group& group = groups[{image, needed.memoryTypeBits}];
     group.resources.push_back(i);
-    group.needed.insert(group.needed.end(), resource.part == Resource::Part::current ? 2 : 1,
+    const bool two = resource.part == Resource::Part::current || resource.doubled;
+    group.needed.insert(group.needed.end(), two ? 2 : 1,
                         {.bytes = needed.size, .alignment = needed.alignment});
     group.all = {0, std::max(group.all.alignment, needed.alignment), needed.memoryTypeBits};
   }
@@ -238,7 +239,7 @@ void FramePlan::make_in_blocks() {
       if (resources_[i].part == Resource::Part::current) {
         make_history(i, {even, place()});
       } else {
-        make(resources_[i], {even, even});
+        make(resources_[i], {even, resources_[i].doubled ? place() : even});
       }
     }
   }

@@ -19,7 +19,8 @@ struct FramePlan::Resource {
   std::string name;
   Part part = Part::none;
   FrameSize size{0, 0};  // of an image
-  // By parity of the frame; both the same except for histories, and for what shares their memory.
+  // By parity of the frame; both the same except for histories, for what shares their memory, and
+  // for what is doubled.
   std::array<const Image*, 2> images{};
   std::array<const Buffer*, 2> buffers{};
   std::array<std::shared_ptr<const Image>, 2> owned_images{};
@@ -29,7 +30,9 @@ struct FramePlan::Resource {
   // What is still to be made by compile(), when it is known which resources share memory.
   std::optional<ImageDesc> image_desc;
   std::optional<BufferDesc> buffer_desc;
-  bool shares = false;  // memory with others
+  bool shares = false;                     // memory with others
+  bool doubled = false;                    // frames have their own in turn
+  std::array<std::uint64_t, 2> written{};  // number of the last frame that did, if it is doubled
 
   bool is_made() const { return images[0] || buffers[0]; }
   void forget() {
@@ -51,7 +54,6 @@ struct FramePlan::Pass {
   const Program* program = nullptr;  // null: a host pass
   const RayProgram* rays = nullptr;  // `program`, where it is a ray tracing pipeline
   bool is_raster = false;
-  bool early = false;
   VkExtent3D local_size{1, 1, 1};
   std::vector<Use> bound;      // in binding order
   std::vector<Use> listed;     // the same as given to bind(), with those that are absent
@@ -74,6 +76,7 @@ struct FramePlan::Pass {
   std::vector<std::uint32_t> conditions;  // numbers of those that it is made of
 
   std::array<VkDescriptorSet, 2> sets{};
+  std::vector<std::uint32_t> doubled;  // resources that are, of those that it writes
 
   VkPipelineBindPoint bind_point() const {
     if (rays) return VK_PIPELINE_BIND_POINT_RAY_TRACING_KHR;

@@ -30,11 +30,6 @@ PassBuilder& PassBuilder::set_host(const char* tag, std::size_t constants_size, 
   return *this;
 }
 
-PassBuilder& PassBuilder::early() {
-  plan_.passes_[pass_].early = true;
-  return *this;
-}
-
 PassBuilder& PassBuilder::host_when(bool known) {
   if (!known) plan_.passes_[pass_].kernel = nullptr;
   return *this;

@@ -52,51 +52,7 @@ PassOrder in_turn(std::size_t passes) {
   return order;
 }
 
-/// Where the early passes at the start end, behind those on the host that come first: the device
-/// has nothing to do for those. 0: there are none.
-std::size_t early_end(const PassOrder& order, std::span<const PassUses> passes) {
-  const auto first_device =
-      std::ranges::find_if(order.passes, [&](std::uint32_t i) { return !passes[i].on_host; });
-  const auto first_late = std::find_if(first_device, order.passes.end(),
-                                       [&](std::uint32_t i) { return !passes[i].early; });
-  return first_late == first_device ? 0
-                                    : static_cast<std::size_t>(first_late - order.passes.begin());
-}
-
-bool uses(const PassUses& pass, std::uint32_t resource) {
-  return std::ranges::any_of(pass.uses, [&](const Use& use) { return use.resource == resource; });
-}
-
 }  // namespace
-
-FrameParts divide_frame(const PassOrder& order, std::span<const PassUses> passes) {
-  FrameParts parts{.early = early_end(order, passes)};
-  parts.closed = parts.early;
-  for (std::size_t i = 0; i < parts.early; ++i) {
-    for (const Use& use : passes[order.passes[i]].uses) {
-      for (std::size_t user = parts.closed; writes(use) && user < order.passes.size(); ++user) {
-        if (uses(passes[order.passes[user]], use.resource)) parts.closed = user + 1;
-      }
-    }
-  }
-  return parts;
-}
-
-std::optional<std::uint32_t> read_too_early(const PassOrder& order,
-                                            std::span<const PassUses> passes) {
-  for (std::size_t i = 0; i < early_end(order, passes); ++i) {
-    for (const Use& read : passes[order.passes[i]].uses) {
-      if (!reads(read)) continue;
-      const bool written = std::ranges::any_of(passes, [&](const PassUses& pass) {
-        return std::ranges::any_of(pass.uses, [&](const Use& use) {
-          return use.resource == read.resource && writes(use);
-        });
-      });
-      if (written) return read.resource;
-    }
-  }
-  return std::nullopt;
-}
 
 PassOrder declared_order(std::span<const PassUses> passes) {
   PassOrder order = in_turn(passes.size());
@@ -122,14 +78,19 @@ PassOrder declared_order(std::span<const PassUses> passes) {
   return order;
 }
 
-PassOrder overlapping_order(std::span<const PassUses> passes) {
+std::vector<std::uint32_t> pass_groups(std::span<const PassUses> passes) {
   Groups groups;
   std::vector<std::uint32_t> group(passes.size());
   std::ranges::transform(passes, group.begin(),
                          [&](const PassUses& pass) { return groups.group_of(pass); });
+  return group;
+}
+
+PassOrder overlapping_order(std::span<const PassUses> passes, const std::vector<bool>& early) {
+  const std::vector<std::uint32_t> group = pass_groups(passes);
   PassOrder order = in_turn(passes.size());
   std::ranges::stable_sort(order.passes, {}, [&](std::uint32_t pass) {
-    return std::pair(group[pass], !passes[pass].early);
+    return std::pair(group[pass], !early.empty() && !early[pass]);
   });
   for (std::size_t i = 0; i < passes.size(); ++i) {
     const std::uint32_t pass = order.passes[i];

@@ -127,6 +127,9 @@ class Renderer {
   /// Whether the next frame may begin before this one is finished, on GPUs: where nothing but the
   /// camera was changed since.
   bool can_begin_another() const;
+  /// The part of the time between two frames after which the device has room for another one beside
+  /// the one that has begun first; 1: not before that is done.
+  float part_before_next() const;
   /// Waits for the frame that has begun first, but no longer. @returns whether it is done
   bool wait_for(std::chrono::nanoseconds time) const;
   /// The second part, of the frame that has begun first.

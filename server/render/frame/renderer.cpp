@@ -256,6 +256,10 @@ bool Renderer::can_begin_another() const {
   return state_->can_begin_another();
 }
 
+float Renderer::part_before_next() const {
+  return state_->compiled ? state_->compiled->plan.part_before_next() : 1.0f;
+}
+
 bool Renderer::wait_for(std::chrono::nanoseconds time) const {
   return !state_->compiled || state_->compiled->plan.wait_for(time);
 }

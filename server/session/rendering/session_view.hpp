@@ -70,8 +70,8 @@ class SessionView {
   bool frame_is_done() const;
   /// Whether its next frame may begin before the device is done with the one that it works on.
   bool can_begin_following();
-  /// Begins it shortly before that, where nothing but the camera has changed: the device goes on
-  /// while the earlier frame is read and sent.
+  /// Begins it shortly before the device has room for it, where nothing but the camera has changed:
+  /// the device goes on while the earlier frame is read and sent.
   void begin_following_frame(Clock::time_point device_free);
   /// Whether its next frame adds to a reference that was not asked for.
   bool refines_reference() const;

@@ -54,8 +54,9 @@ bool SessionView::can_begin_following() {
 }
 
 void SessionView::begin_following_frame(Clock::time_point device_free) {
+  const auto before = duration_cast<Clock::duration>(device_time_ * renderer_->part_before_next());
   const Clock::time_point expected =
-      began_on_device(begun_.front(), device_free) + device_time_ - time_to_begin;
+      began_on_device(begun_.front(), device_free) + before - time_to_begin;
   renderer_->wait_for(expected - Clock::now());
   readers_.collect();
   if (!can_begin_following()) return;

@@ -1,6 +1,8 @@
 // Frames that are canceled, and those that begin while the device works on others.
+#include <array>
 #include <cstring>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "tests/gpu/frame_plan/frame_plan_fixture.hpp"
@@ -154,46 +156,90 @@ TEST_F(FramePlanTest, TheNextFrameBeginsWhileTheDeviceWorksOnOne) {
   EXPECT_EQ(count(), 10.0f);
 }
 
-TEST_F(FramePlanTest, EarlyPassesRunDuringTheEndOfTheFrameBefore) {
-  if (device_.is_cpu()) GTEST_SKIP() << "processors have finished a frame when it has begun";
-  float number = 0.0f;  // of the frame
-  const auto zero = image("zero"), begun = image("begun"), sum = image("sum");
-  const History total = plan_.history("total", format);
-  add("late", total.previous, sum, 0.0f);
-  plan_.pass("early", program_)
-      .read(zero)
-      .write(begun)
-      .constants([&] { return number; })
-      .early()
-      .dispatch(plan_.extent());
-  add("uses", begun, total.current, 0.0f);
-  add("behind", total.current, image("end"), 0.0f);
-  plan_.read_back(total.current);
-  plan_.compile();
-  const auto shown = [&] {
+/// A plan whose frames overlap: six images, of which each pass writes one from the one before, and
+/// the third is doubled. The first is the number of the frame.
+class OverlappingFramePlanTest : public FramePlanTest {
+ protected:
+  void SetUp() override {
+    if (device_.is_cpu()) GTEST_SKIP() << "processors have finished a frame when it has begun";
+    ImageRef from = image("zero");
+    plan_.share_memory();
+    plan_.only_when([this] { return runs_; },
+                    [&] {
+                      for (std::size_t i = 0; i < images_.size(); ++i) {
+                        images_[i] = plan_.image("image " + std::to_string(i), format);
+                        declare(from, images_[i], i == 0);
+                        from = images_[i];
+                      }
+                    });
+  }
+  void declare(ImageRef from, ImageRef to, bool first) {
+    plan_.pass("pass", program_)
+        .read(from)
+        .write(to)
+        .constants([this, first] { return first ? number_ : 0.0f; })
+        .dispatch(plan_.extent());
+  }
+  float shown() {
     float value = 0.0f;
     std::memcpy(&value, plan_.read().data(), sizeof value);
     return value;
-  };
+  }
+
+  float number_ = 1.0f;
+  bool runs_ = true;
+  std::array<ImageRef, 6> images_;
+};
+
+TEST_F(OverlappingFramePlanTest, TheStartOfAFrameRunsDuringTheEndOfTheOneBefore) {
+  const History count = plan_.history("count", format);
+  add("count", count.previous, count.current);
+  plan_.read_back(images_.back());
+  plan_.compile();
   plan_.execute();  // with timers
-  number = 1.0f;
+  number_ = 2.0f;
   plan_.begin();
-  for (int frame = 2; frame <= 12; ++frame) {
-    number = static_cast<float>(frame);
+  for (int frame = 3; frame <= 14; ++frame) {
+    number_ = static_cast<float>(frame);
+    ASSERT_TRUE(plan_.can_begin_another());
     plan_.begin();
     plan_.finish();
     EXPECT_EQ(shown(), static_cast<float>(frame - 1));
+    EXPECT_EQ(value(count.current), static_cast<float>(frame - 1));
   }
   plan_.finish();
-  EXPECT_EQ(shown(), 12.0f);
+  EXPECT_EQ(shown(), 14.0f);
 }
 
-TEST_F(FramePlanTest, EarlyPassesReadNothingThatPassesWrite) {
-  if (device_.is_cpu()) GTEST_SKIP() << "processors have no early passes";
-  const auto a = image("a"), b = image("b");
-  add("early", a, b).early();
-  add("writes", b, a);
-  expect_complaint({"early", "\"a\""});
+TEST_F(OverlappingFramePlanTest, TheDeviceHasRoomForTheNextFrameBeforeTheEndOfOne) {
+  plan_.compile();
+  EXPECT_EQ(plan_.part_before_next(), 1.0f) << "no frame has begun";
+  plan_.begin();
+  EXPECT_EQ(plan_.part_before_next(), 1.0f) << "a frame with timers is alone";
+  plan_.finish();
+  plan_.begin();
+  const float alone = plan_.part_before_next();
+  EXPECT_GT(alone, 0.0f);
+  EXPECT_LT(alone, 1.0f);
+  plan_.begin();
+  plan_.finish();
+  EXPECT_LT(plan_.part_before_next(), alone) << "its start has run beside the frame before";
+  plan_.finish();
+}
+
+// As debug views do while a reference takes over.
+TEST_F(OverlappingFramePlanTest, WhatFramesLeaveOutIsLatestOfTheLastThatDidNot) {
+  plan_.compile();
+  for (int frame = 1; frame <= 3; ++frame) {
+    number_ = static_cast<float>(frame);
+    plan_.execute();
+  }
+  runs_ = false;
+  number_ = 0.0f;
+  for (int frame = 0; frame < 3; ++frame) {
+    plan_.execute();
+    for (const ImageRef image : images_) EXPECT_EQ(value(image), 3.0f);
+  }
 }
 
 TEST_F(FramePlanTest, FramesWithTimersAreNotOverlapped) {

@@ -4,6 +4,7 @@
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <memory>
+#include <string>
 
 #include "tests/support/frame_rig.hpp"
 #include "tests/support/similarity.hpp"
@@ -57,13 +58,20 @@ class OverlappingFrames : public testing::Test {
 
 // Light that bounces depends on the order in which the device's threads come to its cache.
 TEST_F(OverlappingFrames, AreThoseDrawnOneAfterTheOther) {
+  using Source = protocol::PrimaryVisibility;
   for (const auto ground : {protocol::GroundUse::off, protocol::GroundUse::on}) {
-    SCOPED_TRACE(ground == protocol::GroundUse::on ? "the ground catches shadows" : "no ground");
-    protocol::Settings settings = without_indirect();
-    settings.background.ground = ground;
-    const render::Frame alone = move(settings, false), together = move(settings, true);
-    EXPECT_LT(difference(alone, together).mean, 0.01);
-    save_image(ground == protocol::GroundUse::on ? "overlapping_ground" : "overlapping", together);
+    for (const Source source : {Source::raster, Source::rays}) {
+      protocol::Settings settings = without_indirect();
+      settings.background.ground = ground;
+      settings.gbuffer.source = source;
+      const std::string name = std::string("overlapping_") +
+                               (source == Source::rays ? "rays" : "raster") +
+                               (ground == protocol::GroundUse::on ? "_ground" : "");
+      SCOPED_TRACE(name);
+      const render::Frame alone = move(settings, false), together = move(settings, true);
+      EXPECT_LT(difference(alone, together).mean, 0.01);
+      save_image(name, together);
+    }
   }
 }
 

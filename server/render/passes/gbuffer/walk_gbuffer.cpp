@@ -98,7 +98,6 @@ void trace_first(gpu::FramePlan& plan, const FrameInputs& in, const Walk& walk,
   plan.pass("gbuffer.trace", in.program(shaders::gbuffer_trace))
       .bind<GBufferTraceBindings>({.hierarchy = walk.hierarchy, .hits = walk.hits})
       .constants(hierarchy.root)
-      .early()
       .dispatch(gpu::each_pixel());
 }
 
