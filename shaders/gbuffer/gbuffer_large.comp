@@ -7,7 +7,7 @@ layout(local_size_x = 32) in;
 
 layout(set = 1, binding = 4, std430) readonly buffer Parts {
   uint part_count;
-  uint padding[3];
+  uint trace_groups[3];
   DrawnPart parts[];
 };
 layout(push_constant) uniform Constants { uint most_parts; };
@@ -30,7 +30,7 @@ void draw_part(DrawnPart part) {
 
 void main() {
   begin_drawing();
-  if (part_count > most_parts) return;  // gbuffer_drawn.comp traces all rays then
+  if (part_count > most_parts) return;  // all rays are traced then
   for (uint i = gl_WorkGroupID.x; i < part_count; i += gl_NumWorkGroups.x) draw_part(parts[i]);
   draw_queued(true);
 }

@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 
 layout(set = 1, binding = 4, std430) buffer Parts {
   uint part_count;
-  uint padding[3];
+  uint trace_groups[3];
   DrawnPart parts[];
 };
 layout(push_constant) uniform Constants {
@@ -95,6 +95,12 @@ void list_later(uint slot, ivec2 first, ivec2 last) {
   part_queue[atomicAdd(parts_queued, 1u)] = DrawnPart(slot, packed(first), packed(last), 0u);
 }
 
+/// In place of what is drawn: by groups of 8 x 8 pixels.
+void trace_all() {
+  trace_groups[0] = (frame.extent.x + 7u) / 8u;
+  trace_groups[1] = (frame.extent.y + 7u) / 8u;
+}
+
 /// By all invocations. `end`: also if there are fewer than invocations.
 void list_queued(bool end) {
   barrier();
@@ -106,6 +112,7 @@ void list_queued(bool end) {
       // Once it is too long it grows no more, so that the count never wraps.
       group_first = part_count > most_parts ? most_parts : atomicAdd(part_count, count - first);
       parts_queued = first;
+      if (group_first + (count - first) > most_parts) trace_all();
     }
     barrier();
     const uint to = group_first + gl_LocalInvocationIndex;

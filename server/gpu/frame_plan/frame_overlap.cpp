@@ -9,17 +9,16 @@ namespace {
 
 constexpr std::uint32_t the_whole_frame = std::numeric_limits<std::uint32_t>::max();
 
-/// How much of the frame before must be done, as a number of groups from its start.
+/// How much of the frame before must be done, as the number of steps from its start: whatever each
+/// of its passes has as its step.
 class FrameBefore {
  public:
-  FrameBefore(std::span<const PassUses> passes, std::span<const std::uint32_t> groups,
+  FrameBefore(std::span<const PassUses> passes, std::span<const std::uint32_t> steps,
               std::span<const FrameResource> resources)
       : resources_(resources), read_(resources.size()), written_(resources.size()) {
     for (std::size_t pass = 0; pass < passes.size(); ++pass) {
       for (const Use& use : passes[pass].uses) {
-        const auto keep_last = [&](std::uint32_t& last) {
-          last = std::max(last, groups[pass] + 1);
-        };
+        const auto keep_last = [&](std::uint32_t& last) { last = std::max(last, steps[pass] + 1); };
         if (reads(use)) keep_last(read_[use.resource]);
         if (writes(use)) keep_last(written_[use.resource]);
       }
@@ -35,7 +34,7 @@ class FrameBefore {
     if (before == FrameResource::none) return 0;
     return writes(use) ? std::max(written_[before], read_[before]) : written_[before];
   }
-  /// With what can be doubled.
+  /// With all doubled that can be.
   std::uint32_t needed_by(const PassUses& pass) const {
     std::uint32_t needed = 0;
     for (const Use& use : pass.uses) {
@@ -46,50 +45,66 @@ class FrameBefore {
 
  private:
   std::span<const FrameResource> resources_;
-  std::vector<std::uint32_t> read_;     // groups up to the last that does, by resource
+  std::vector<std::uint32_t> read_;     // steps up to the last pass that does, by resource
   std::vector<std::uint32_t> written_;  // likewise
 };
 
-/// What each pass needs of the frame before.
-std::vector<std::uint32_t> needed_groups(std::span<const PassUses> passes,
-                                         const FrameBefore& before) {
-  std::vector<std::uint32_t> needed;
-  bool starts = true;
-  for (const PassUses& pass : passes) {
-    starts = starts && pass.on_host;
-    needed.push_back(before.needed_by(pass));
-    // The host does not wait for the device.
-    if (pass.on_host && (!starts || needed.back() > 0)) needed.back() = the_whole_frame;
+/// Those of the `wanted` passes, by number, that need nothing of others in their own frame: of
+/// passes that are not wanted, or of the device on the host.
+std::vector<bool> without_needs(std::span<const PassUses> passes, std::vector<bool> wanted) {
+  std::set<std::uint32_t> read;  // by the others
+  std::set<std::uint32_t> written;
+  bool behind_device = false;
+  bool behind_host = false;  // that is not wanted
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    const bool needs = std::ranges::any_of(passes[i].uses, [&](const Use& use) {
+      return written.contains(use.resource) || (writes(use) && read.contains(use.resource));
+    });
+    wanted[i] = wanted[i] && !needs && !behind_host && !(passes[i].on_host && behind_device);
+    behind_device |= !passes[i].on_host;
+    if (wanted[i]) continue;
+    behind_host |= passes[i].on_host;
+    for (const Use& use : passes[i].uses) {
+      if (reads(use)) read.insert(use.resource);
+      if (writes(use)) written.insert(use.resource);
+    }
   }
-  return needed;
+  return wanted;
 }
 
-struct Division {
-  PassOrder order;
-  FrameParts parts;
-  std::size_t overlapping = 0;  // groups of the shorter of the two parts
-};
+/// Groups of passes on the device from one place of the order to another.
+std::size_t count_groups(const PassOrder& order, std::span<const PassUses> passes,
+                         std::size_t first, std::size_t last) {
+  std::size_t count = 0;
+  for (std::size_t place = first; place < last; ++place) {
+    const std::uint32_t pass = order.passes[place];
+    count += !passes[pass].on_host && (count == 0 || order.barrier_before[pass]);
+  }
+  return count;
+}
 
-/// With a frame that begins when so many groups of the one before are done.
-Division divide(std::span<const PassUses> passes, std::span<const std::uint32_t> groups,
-                std::span<const std::uint32_t> needed, std::uint32_t closed) {
-  std::vector<bool> early(passes.size());
+/// With these early passes.
+FrameOverlap divide(std::span<const PassUses> passes, std::span<const FrameResource> resources,
+                    const std::vector<bool>& early) {
+  FrameOverlap made{.order = overlapping_order(passes, early)};
+  made.parts.early = static_cast<std::size_t>(std::ranges::count(early, true));
+  std::vector<std::uint32_t> places(passes.size());
+  for (std::uint32_t place = 0; place < passes.size(); ++place) {
+    places[made.order.passes[place]] = place;
+  }
+  const FrameBefore before(passes, places, resources);
+  made.parts.closed = made.parts.early;
   for (std::size_t i = 0; i < passes.size(); ++i) {
-    early[i] = groups[i] < closed && needed[i] <= closed;
+    if (!early[i]) continue;
+    made.parts.closed = std::max<std::size_t>(made.parts.closed, before.needed_by(passes[i]));
   }
-  Division made{.order = overlapping_order(passes, early)};
-  std::set<std::uint32_t> first;
-  std::set<std::uint32_t> last;
-  bool starts = true;
-  for (const std::uint32_t pass : made.order.passes) {
-    starts = starts && early[pass];
-    made.parts.early += starts;
-    made.parts.closed += groups[pass] < closed;
-    if (passes[pass].on_host) continue;
-    if (starts) first.insert(groups[pass]);
-    if (groups[pass] >= closed) last.insert(groups[pass]);
+  std::set<std::uint32_t> doubled;
+  for (std::size_t i = 0; i < passes.size(); ++i) {
+    for (const Use& use : passes[i].uses) {
+      if (early[i] && before.needed_by(use) > made.parts.closed) doubled.insert(use.resource);
+    }
   }
-  made.overlapping = std::min(first.size(), last.size());
+  made.doubled.assign(doubled.begin(), doubled.end());
   return made;
 }
 
@@ -99,25 +114,27 @@ FrameOverlap overlap_frames(std::span<const PassUses> passes,
                             std::span<const FrameResource> resources) {
   const std::vector<std::uint32_t> groups = pass_groups(passes);
   const FrameBefore before(passes, groups, resources);
-  const std::vector<std::uint32_t> needed = needed_groups(passes, before);
-  Division best{.order = overlapping_order(passes)};
-  std::uint32_t begins = 0;
+  FrameOverlap best{.order = overlapping_order(passes)};
+  std::size_t most = 0;
   const std::uint32_t all = groups.empty() ? 0 : *std::ranges::max_element(groups) + 1;
+  // The frame before is closed behind so many groups, or few more.
   for (std::uint32_t closed = 1; closed < all; ++closed) {
-    Division other = divide(passes, groups, needed, closed);
-    if (other.overlapping <= best.overlapping) continue;
-    best = std::move(other);
-    begins = closed;
-  }
-  FrameOverlap overlap{.order = std::move(best.order), .parts = best.parts};
-  std::set<std::uint32_t> doubled;
-  for (std::size_t i = 0; i < best.parts.early; ++i) {
-    for (const Use& use : passes[overlap.order.passes[i]].uses) {
-      if (before.needed_by(use) > begins) doubled.insert(use.resource);
+    std::vector<bool> wanted(passes.size());
+    for (std::size_t i = 0; i < passes.size(); ++i) {
+      const std::uint32_t needed = before.needed_by(passes[i]);
+      // The host does not wait for the device.
+      wanted[i] = groups[i] < closed && needed <= (passes[i].on_host ? 0 : closed);
     }
+    FrameOverlap divided = divide(passes, resources, without_needs(passes, std::move(wanted)));
+    const auto& [early, closed_at] = divided.parts;
+    const std::size_t overlapping =
+        std::min(count_groups(divided.order, passes, 0, early),
+                 count_groups(divided.order, passes, closed_at, passes.size()));
+    if (overlapping <= most) continue;
+    most = overlapping;
+    best = std::move(divided);
   }
-  overlap.doubled.assign(doubled.begin(), doubled.end());
-  return overlap;
+  return best;
 }
 
 }  // namespace heliograph::gpu

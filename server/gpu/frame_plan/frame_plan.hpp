@@ -94,6 +94,9 @@ class FramePlan {
   void leave_undefined_when_skipped(ImageRef image) {
     undefined_when_skipped_.push_back(image.index);
   }
+  /// Before compile(): an image whose content does not matter in frames that skip those that write
+  /// it, although other passes may read it.
+  void ignore_when_skipped(ImageRef image) { ignored_when_skipped_.push_back(image.index); }
   /// From the next frame on all images keep their content until another frame begins, and what
   /// passes left out, instead of only those for keep(): more memory, in which histories stay.
   void keep_images(bool keep);
@@ -350,6 +353,7 @@ class FramePlan {
   std::vector<std::pair<std::uint32_t, std::uint64_t>> history_offsets_;  // of `current` ones
   std::vector<std::uint32_t> kept_;
   std::vector<std::uint32_t> undefined_when_skipped_;
+  std::vector<std::uint32_t> ignored_when_skipped_;
   std::uint32_t conditions_ = 0;                          // of passes, made so far
   const std::function<bool()>* asks_canceled_ = nullptr;  // while a frame may be canceled
   mutable std::mutex asking_;

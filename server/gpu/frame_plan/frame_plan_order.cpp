@@ -67,7 +67,9 @@ bool FramePlan::can_be_doubled(std::uint32_t index) const {
   if (resource.is_made() || resource.part != Resource::Part::none) return false;
   if (resource.buffer_desc && resource.buffer_desc->memory != Memory::device) return false;
   const auto uses = first_and_last_use(index);
-  return uses && uses->first_access == Access::write && !reads_left_out(index);
+  const bool ignored =
+      std::ranges::find(ignored_when_skipped_, index) != ignored_when_skipped_.end();
+  return uses && uses->first_access == Access::write && (ignored || !reads_left_out(index));
 }
 
 }  // namespace heliograph::gpu

@@ -52,6 +52,19 @@ PassOrder in_turn(std::size_t passes) {
   return order;
 }
 
+/// Passes of a frame, in declared order: notes in front of which another group than the first
+/// begins.
+void sort_by_groups(std::span<std::uint32_t> part, std::span<const PassUses> passes,
+                    std::vector<bool>& begins_group) {
+  Groups groups;
+  std::vector<std::uint32_t> group(passes.size());
+  for (const std::uint32_t pass : part) group[pass] = groups.group_of(passes[pass]);
+  std::ranges::stable_sort(part, {}, [&](std::uint32_t pass) { return group[pass]; });
+  for (std::size_t i = 1; i < part.size(); ++i) {
+    begins_group[part[i]] = group[part[i]] != group[part[i - 1]];
+  }
+}
+
 }  // namespace
 
 PassOrder declared_order(std::span<const PassUses> passes) {
@@ -87,15 +100,18 @@ std::vector<std::uint32_t> pass_groups(std::span<const PassUses> passes) {
 }
 
 PassOrder overlapping_order(std::span<const PassUses> passes, const std::vector<bool>& early) {
-  const std::vector<std::uint32_t> group = pass_groups(passes);
   PassOrder order = in_turn(passes.size());
-  std::ranges::stable_sort(order.passes, {}, [&](std::uint32_t pass) {
-    return std::pair(group[pass], !early.empty() && !early[pass]);
-  });
-  for (std::size_t i = 0; i < passes.size(); ++i) {
+  if (!early.empty()) {
+    std::ranges::stable_partition(order.passes, [&](std::uint32_t pass) { return early[pass]; });
+  }
+  const auto rest = static_cast<std::ptrdiff_t>(std::ranges::count(early, true));
+  sort_by_groups(std::span(order.passes).first(rest), passes, order.barrier_before);
+  sort_by_groups(std::span(order.passes).subspan(rest), passes, order.barrier_before);
+  for (std::size_t i = 1; i < passes.size(); ++i) {
     const std::uint32_t pass = order.passes[i];
-    const bool on_host = passes[pass].on_host || (i > 0 && passes[order.passes[i - 1]].on_host);
-    order.barrier_before[pass] = i > 0 && !on_host && group[pass] != group[order.passes[i - 1]];
+    const bool on_host = passes[pass].on_host || passes[order.passes[i - 1]].on_host;
+    const bool begins_rest = static_cast<std::ptrdiff_t>(i) == rest;
+    order.barrier_before[pass] = !on_host && (order.barrier_before[pass] || begins_rest);
   }
   return order;
 }

@@ -35,8 +35,8 @@ PassOrder declared_order(std::span<const PassUses> passes);
 std::vector<std::uint32_t> pass_groups(std::span<const PassUses> passes);
 
 /// Passes by their groups, which needs as few barriers as there can be, so that the device works on
-/// several passes at a time. Within a group those come first that are `early`, by number; none is
-/// moved across a pass on the host.
+/// several passes at a time; none is moved across a pass on the host. `early`, by number: passes
+/// that need nothing of others come before these, in groups of their own.
 PassOrder overlapping_order(std::span<const PassUses> passes, const std::vector<bool>& early = {});
 
 }  // namespace heliograph::gpu

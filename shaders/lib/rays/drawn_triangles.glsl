@@ -8,6 +8,7 @@
 #define BVH_BINDING 0
 #include "lib/rays/bvh.glsl"
 #include "lib/rays/gbuffer_ray.glsl"
+#include "lib/scene/coverage.glsl"
 #include "shared/drawn.h"
 
 // t of the hit in the upper half, whose bits grow with it, the triangle's slot in the lower.
@@ -93,11 +94,28 @@ void draw_pixel(uint slot, ivec2 pixel) {
   if (!triangle_hit(slot, line, vec2(ray.t_min, ray.t_max), tuv, words)) return;
   const uvec3 numbers = words & bvh_number_mask;
   blending = 0u;  // blended surfaces stop the ray
-  if (words.z != bvh_no_link && !mask_stops(numbers.z, tuv, numbers.y, numbers.x)) return;
+  if (words.z != bvh_no_link) {
+    if (!mask_stops(numbers.z, tuv, numbers.y, numbers.x)) return;
+    Hit hit = no_hit(ray);
+    set_hit(tuv, words, hit);
+    if (is_hole(hit, ray.direction, cone_width(camera_cone(), hit.t))) return;
+  }
   const uint64_t key = uint64_t(floatBitsToUint(tuv.x)) << 32 | uint64_t(slot);
   const uint index = drawn_index(uvec2(pixel));
   // Reading costs less, and most of what lies behind ends here.
   if (key < nearest[index]) atomicMin(nearest[index], key);
+}
+
+/// What was drawn nearest at gbuffer_ray_index() `index`, of that pixel's ray.
+Hit drawn_hit(uint index, Ray ray) {
+  Hit hit = no_hit(ray);
+  const uint64_t key = nearest[index];
+  if (key == ~uint64_t(0)) return hit;
+  vec3 tuv;
+  uvec3 words;
+  triangle_hit(uint(key), make_line(ray.origin, ray.direction), vec2(ray.t_min, ray.t_max), tuv, words);
+  set_hit(tuv, words, hit);
+  return hit;
 }
 
 #ifdef DRAWING_GROUP

@@ -11,6 +11,19 @@ bool is_open(HitSurface s, vec3 direction) {
   return (s.flags & material_alpha_mask) != 0u && s.alpha < s.alpha_cutoff;
 }
 
+/// Whether is_open() because of its mask: for what needs no more of a surface. `width`: metres, of the
+/// ray's footprint at the hit.
+bool is_hole(Hit hit, vec3 direction, float width) {
+  HitTriangle t = load_triangle(hit);
+  const uint flags = materials[t.material].flags;
+  if ((flags & material_alpha_mask) == 0u || (flags & material_whole_alpha) != 0u) return false;
+  vec3 across = triangle_across(t);
+  float twice_world_area = length(across);
+  float cosine = dot(across, direction) / max(twice_world_area, 1e-30);
+  TextureLookup lookup = texture_lookup(t, twice_world_area, width, abs(cosine));
+  return triangle_color(t, lookup).a < materials[t.material].alpha_cutoff;
+}
+
 /// Whether something of what is behind shows through the surface.
 bool is_blended(HitSurface s) {
   return (s.flags & material_alpha_blend) != 0u &&

@@ -86,6 +86,12 @@ vec3 transform_normal(HitTriangle t, vec3 n) {
 
 vec3 transform_direction(HitTriangle t, vec3 v) { return vec4(v, 0.0) * t.world; }
 
+/// Of the front face, twice the triangle's area long; world.
+vec3 triangle_across(HitTriangle t) {
+  return cross(transform_direction(t, t.b.position - t.a.position),
+               transform_direction(t, t.c.position - t.a.position)) * t.handedness;
+}
+
 /// Where a texture is read: both uv sets, their areas (twice that of the triangle's image), and
 /// half the logarithm of the footprint's fraction of the triangle.
 struct TextureLookup {
@@ -191,12 +197,17 @@ SurfaceLayer evaluate_layer(HitTriangle t, TextureLookup lookup, vec3 normal, ou
   return layer;
 }
 
-void evaluate_material(inout HitSurface s, HitTriangle t, TextureLookup lookup) {
-  uint m = t.material;
+/// The base colour with alpha, as it is without material_whole_alpha.
+vec4 triangle_color(HitTriangle t, TextureLookup lookup) {
   vec4 tint = vertex_color(t.a) * t.weights.x + vertex_color(t.b) * t.weights.y +
               vertex_color(t.c) * t.weights.z;
-  vec4 color = materials[m].base_color * tint *
-               slot_texel(materials[m].base_color_texture, lookup);
+  return materials[t.material].base_color * tint *
+         slot_texel(materials[t.material].base_color_texture, lookup);
+}
+
+void evaluate_material(inout HitSurface s, HitTriangle t, TextureLookup lookup) {
+  uint m = t.material;
+  vec4 color = triangle_color(t, lookup);
   s.base_color = clamp(color.rgb, 0.0, 1.0);
   s.alpha = color.a;
   s.alpha_cutoff = materials[m].alpha_cutoff;
@@ -221,8 +232,7 @@ HitSurface hit_surface(Hit hit, vec3 direction, float width) {
   vec3 vertex_normal = normalize(transform_normal(t, t.a.normal) * t.weights.x +
                                  transform_normal(t, t.b.normal) * t.weights.y +
                                  transform_normal(t, t.c.normal) * t.weights.z);
-  vec3 across = cross(transform_direction(t, t.b.position - t.a.position),
-                      transform_direction(t, t.c.position - t.a.position)) * t.handedness;
+  vec3 across = triangle_across(t);
   float twice_world_area = length(across);
   vec3 front = twice_world_area > 0.0 ? across / twice_world_area : vertex_normal;
   s.front = front;

@@ -227,6 +227,29 @@ TEST_F(OverlappingFramePlanTest, TheDeviceHasRoomForTheNextFrameBeforeTheEndOfOn
   plan_.finish();
 }
 
+// A plan's frames without `maybe` read its image in vain.
+TEST_F(FramePlanTest, WhatIsIgnoredWhenSkippedDoesNotHoldUpTheNextFrame) {
+  if (device_.is_cpu()) GTEST_SKIP() << "processors have finished a frame when it has begun";
+  for (const bool ignored : {false, true}) {
+    FramePlan plan(device_, {5, 3});
+    const ImageRef zero = plan.image("zero", format);
+    plan.get(zero).clear();
+    plan.share_memory();
+    const ImageRef maybe = plan.image("maybe", format), end = plan.image("end", format);
+    if (ignored) plan.ignore_when_skipped(maybe);
+    const auto add_to = [&](const char* name, ImageRef from, ImageRef to) {
+      return plan.pass(name, program_).read(from).write(to).constants(1.0f).dispatch(plan.extent());
+    };
+    add_to("maybe", zero, maybe).when([] { return true; });
+    add_to("end", maybe, end);
+    plan.compile();
+    plan.execute();  // with timers
+    plan.begin();
+    EXPECT_EQ(plan.part_before_next() < 1.0f, ignored);
+    plan.finish();
+  }
+}
+
 // As debug views do while a reference takes over.
 TEST_F(OverlappingFramePlanTest, WhatFramesLeaveOutIsLatestOfTheLastThatDidNot) {
   plan_.compile();

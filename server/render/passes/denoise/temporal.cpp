@@ -73,6 +73,7 @@ AccumulatedSignal accumulate_visibility(gpu::FramePlan& plan, const FrameInputs&
   const gpu::History moments = plan.history(buffers.moments.name, four_fractions);
   const gpu::History history_length = histories.visibility_length;
   const gpu::ImageRef signal = plan.image(buffers.signal.name, four_floats);
+  plan.ignore_when_skipped(signal);  // then it is not blurred
   const auto& settings = in.settings.shadow_temporal;
   const gpu::History fast_history = declare_fast_history(
       plan, buffers.fast_history, formats::two_halves, settings.rectification, std::nullopt);

@@ -3,7 +3,6 @@
 #include "render/passes/formats.hpp"
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
 #include "render/passes/gbuffer/walked_buffers.hpp"
-#include "shaders/embedded.hpp"
 #include "shaders/shared/drawn.h"
 
 namespace heliograph::render {
@@ -17,8 +16,9 @@ constexpr std::uint32_t least_triangles = 100;
 constexpr std::uint32_t most_triangles = 65535 * 64;
 /// Enough to fill a large device several times; each draws one part after the other.
 constexpr std::uint32_t groups_of_parts = 8192;
-/// Bytes in front of the first part: how many there are, and padding.
+/// Bytes in front of the first part: how many there are, and groups that trace in its place.
 constexpr VkDeviceSize list_header = 16;
+constexpr VkDeviceSize trace_groups_offset = 4;
 
 /// shaders/gbuffer/gbuffer_clear.comp
 template <class Stage>
@@ -49,17 +49,11 @@ struct GBufferLargeBindings {
   gpu::ReadBuffer<Stage, shared::DrawnPart> parts;
 };
 
-/// shaders/gbuffer/gbuffer_drawn.comp
+/// shaders/gbuffer/gbuffer_drawn.comp and gbuffer_drawn_beside.comp
 template <class Stage>
 struct GBufferDrawnBindings {
   DrawnTriangles<Stage> drawn;
-  gpu::ReadBuffer<Stage, shared::DrawnPart> parts;
   gpu::WriteBuffer<Stage, shared::Hit> hits;
-};
-struct GBufferDrawnConstants {
-  std::uint32_t root;
-  std::uint32_t has_instances;
-  std::uint32_t most_parts;
 };
 
 }  // namespace
@@ -76,7 +70,7 @@ void draw_camera_rays(gpu::FramePlan& plan, const FrameInputs& in,
                                             .nearest = nearest};
   const gpu::BufferRef parts =
       plan.buffer("gbuffer.parts", list_header + sizeof(shared::DrawnPart) * most_parts,
-                  formats::storage, gpu::Memory::device);
+                  formats::storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, gpu::Memory::device);
   plan.pass("gbuffer.clear", in.program(shaders::gbuffer_clear))
       .bind<GBufferClearBindings>({.nearest = nearest, .parts = parts})
       .dispatch(gpu::each_pixel().reduced(2));
@@ -88,12 +82,19 @@ void draw_camera_rays(gpu::FramePlan& plan, const FrameInputs& in,
       .bind<GBufferLargeBindings>({.drawn = drawn, .parts = parts})
       .constants(most_parts)
       .dispatch({groups_of_parts * 32, 1});
-  plan.pass("gbuffer.drawn", in.program(shaders::gbuffer_drawn))
-      .bind<GBufferDrawnBindings>({.drawn = drawn, .parts = parts, .hits = hits})
-      .constants([root = hierarchy.root, has_instances = !hierarchy.flat.all, most_parts] {
-        return GBufferDrawnConstants{root(), has_instances, most_parts};
-      })
-      .dispatch(gpu::each_pixel());
+  const GBufferDrawnBindings<gpu::Declared> all{.drawn = drawn, .hits = hits};
+  if (hierarchy.flat.all) {
+    plan.pass("gbuffer.drawn", in.program(shaders::gbuffer_drawn))
+        .bind<GBufferDrawnBindings>(all)
+        .dispatch(gpu::each_pixel());
+  } else {
+    plan.pass("gbuffer.drawn", in.program(shaders::gbuffer_drawn_beside))
+        .bind<GBufferDrawnBindings>(all)
+        .constants(hierarchy.root)
+        .dispatch(gpu::each_pixel());
+  }
+  trace_camera_rays(plan, in, hierarchy, drawn.hierarchy, hits)
+      .dispatch_indirect(parts, trace_groups_offset);
 }
 
 std::uint32_t most_drawn_parts(VkExtent2D extent) {

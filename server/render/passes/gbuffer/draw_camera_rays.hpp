@@ -10,9 +10,9 @@ namespace heliograph::render {
 /// compute shaders, each intersected with the rays of the pixels that it covers, and the nearest
 /// stays (Laine and Karras, HPG 2011; small ones by an invocation each, as Karis et al., SIGGRAPH
 /// 2021). Backs of one-sided triangles, which camera rays go on through, are left out where no
-/// mirror turns them. Only the rest of the scene is traced. Of surfaces equally far from the camera
-/// another may be hit. Frames whose large triangles have more than `most_parts` (shared::DrawnPart)
-/// are traced as a whole.
+/// mirror turns them, and so are holes that the filtered texels of masks have. Only the rest of the
+/// scene is traced. Of surfaces equally far from the camera another may be hit. Frames whose large
+/// triangles have more than `most_parts` (shared::DrawnPart) are traced as a whole.
 void draw_camera_rays(gpu::FramePlan& plan, const FrameInputs& in,
                       const tracing::WalkedHierarchy& hierarchy, gpu::BufferRef hits,
                       std::uint32_t most_parts);

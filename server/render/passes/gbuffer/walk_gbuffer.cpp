@@ -25,13 +25,6 @@ struct Walk {
   tracing::RayStream passed;  // rays that go on behind the first surface
 };
 
-/// shaders/gbuffer/gbuffer_trace.comp
-template <class Stage>
-struct GBufferTraceBindings {
-  WalkedBuffers<Stage> hierarchy;
-  gpu::WriteBuffer<Stage, shared::Hit> hits;
-};
-
 /// What a surface is stored in: bindings 6 to 13 of shaders/lib/scene/gbuffer_hits.glsl.
 template <class Stage>
 struct StoredSurfaces {
@@ -93,14 +86,6 @@ Walk declare_walk(gpu::FramePlan& plan, const FrameInputs& in,
           .passed = declare_rays(plan, "gbuffer.passed", capacity, tracing::RayKind::camera)};
 }
 
-void trace_first(gpu::FramePlan& plan, const FrameInputs& in, const Walk& walk,
-                 const tracing::WalkedHierarchy& hierarchy) {
-  plan.pass("gbuffer.trace", in.program(shaders::gbuffer_trace))
-      .bind<GBufferTraceBindings>({.hierarchy = walk.hierarchy, .hits = walk.hits})
-      .constants(hierarchy.root)
-      .dispatch(gpu::each_pixel());
-}
-
 void store_first(gpu::FramePlan& plan, const FrameInputs& in, const Walk& walk,
                  const GBuffer& gbuffer) {
   const auto& shader = walk.layered ? shaders::gbuffer_first_layered : shaders::gbuffer_first;
@@ -136,7 +121,7 @@ GBuffer walk_gbuffer(gpu::FramePlan& plan, const FrameInputs& in,
   if (draws_camera_rays(plan, in, hierarchy)) {
     draw_camera_rays(plan, in, hierarchy, walk.hits, most_drawn_parts(plan.extent()));
   } else {
-    trace_first(plan, in, walk, hierarchy);
+    trace_camera_rays(plan, in, hierarchy, walk.hierarchy, walk.hits).dispatch(gpu::each_pixel());
   }
   // Camera rays decide for themselves, by the filtered texel: as drawn triangles do.
   begin_rays(plan, in, "gbuffer", walk.passed, Blending::stops);

@@ -20,7 +20,9 @@ class VisibilityTrace {
         in_(in),
         name_(name),
         kind_(kind),
-        visibility_(plan.image(buffer.name, VK_FORMAT_R32_SFLOAT)) {}
+        visibility_(plan.image(buffer.name, VK_FORMAT_R32_SFLOAT)) {
+    plan.ignore_when_skipped(visibility_);  // the frame's flags say so to whoever reads it
+  }
 
   gpu::ImageRef visibility() const { return visibility_; }
 
