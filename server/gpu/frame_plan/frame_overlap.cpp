@@ -76,11 +76,21 @@ std::vector<bool> without_needs(std::span<const PassUses> passes, std::vector<bo
 std::size_t count_groups(const PassOrder& order, std::span<const PassUses> passes,
                          std::size_t first, std::size_t last) {
   std::size_t count = 0;
+  bool begins = true;
   for (std::size_t place = first; place < last; ++place) {
     const std::uint32_t pass = order.passes[place];
-    count += !passes[pass].on_host && (count == 0 || order.barrier_before[pass]);
+    count += !passes[pass].on_host && (begins || order.barrier_before[pass]);
+    begins = passes[pass].on_host;
   }
   return count;
+}
+
+/// From one frame to the next: of the parts at the same time, those of the longer one.
+std::size_t groups_in_turn(const FrameOverlap& overlap, std::span<const PassUses> passes) {
+  const auto& [early, closed] = overlap.parts;
+  return std::max(count_groups(overlap.order, passes, 0, early),
+                  count_groups(overlap.order, passes, closed, passes.size())) +
+         count_groups(overlap.order, passes, early, closed);
 }
 
 /// With these early passes.
@@ -115,7 +125,7 @@ FrameOverlap overlap_frames(std::span<const PassUses> passes,
   const std::vector<std::uint32_t> groups = pass_groups(passes);
   const FrameBefore before(passes, groups, resources);
   FrameOverlap best{.order = overlapping_order(passes)};
-  std::size_t most = 0;
+  std::size_t least = groups_in_turn(best, passes);
   const std::uint32_t all = groups.empty() ? 0 : *std::ranges::max_element(groups) + 1;
   // The frame before is closed behind so many groups, or few more.
   for (std::uint32_t closed = 1; closed < all; ++closed) {
@@ -126,12 +136,9 @@ FrameOverlap overlap_frames(std::span<const PassUses> passes,
       wanted[i] = groups[i] < closed && needed <= (passes[i].on_host ? 0 : closed);
     }
     FrameOverlap divided = divide(passes, resources, without_needs(passes, std::move(wanted)));
-    const auto& [early, closed_at] = divided.parts;
-    const std::size_t overlapping =
-        std::min(count_groups(divided.order, passes, 0, early),
-                 count_groups(divided.order, passes, closed_at, passes.size()));
-    if (overlapping <= most) continue;
-    most = overlapping;
+    const std::size_t in_turn = groups_in_turn(divided, passes);
+    if (in_turn >= least) continue;
+    least = in_turn;
     best = std::move(divided);
   }
   return best;

@@ -30,9 +30,10 @@ struct FrameOverlap {
   std::vector<std::uint32_t> doubled;  // resources of which frames have their own in turn
 };
 
-/// Divides frames such that the end of one and the start of the next, which then run at the same
-/// time, hold as many passes one behind the other as they can. `resources` by number. A pass on the
-/// host is early only where nothing but others on the host comes before it.
+/// Divides frames such that as few groups of passes as can be follow each other from one frame to
+/// the next, where the start of one runs at the same time as the end of the one before. `resources`
+/// by number. A pass on the host is early only where nothing but others on the host comes before
+/// it.
 FrameOverlap overlap_frames(std::span<const PassUses> passes,
                             std::span<const FrameResource> resources);
 

@@ -98,7 +98,7 @@ void draw_pixel(uint slot, ivec2 pixel) {
     if (!mask_stops(numbers.z, tuv, numbers.y, numbers.x)) return;
     Hit hit = no_hit(ray);
     set_hit(tuv, words, hit);
-    if (is_hole(hit, ray.direction, cone_width(camera_cone(), hit.t))) return;
+    if (is_open(hit, ray.direction, cone_width(camera_cone(), hit.t))) return;
   }
   const uint64_t key = uint64_t(floatBitsToUint(tuv.x)) << 32 | uint64_t(slot);
   const uint index = drawn_index(uvec2(pixel));

@@ -11,15 +11,15 @@ bool is_open(HitSurface s, vec3 direction) {
   return (s.flags & material_alpha_mask) != 0u && s.alpha < s.alpha_cutoff;
 }
 
-/// Whether is_open() because of its mask: for what needs no more of a surface. `width`: metres, of the
-/// ray's footprint at the hit.
-bool is_hole(Hit hit, vec3 direction, float width) {
+/// The same for what needs no more of a surface. `width`: of the ray's footprint there, metres.
+bool is_open(Hit hit, vec3 direction, float width) {
   HitTriangle t = load_triangle(hit);
   const uint flags = materials[t.material].flags;
-  if ((flags & material_alpha_mask) == 0u || (flags & material_whole_alpha) != 0u) return false;
   vec3 across = triangle_across(t);
   float twice_world_area = length(across);
-  float cosine = dot(across, direction) / max(twice_world_area, 1e-30);
+  float cosine = dot(front_normal(across, twice_world_area, interpolated_normal(t)), direction);
+  if (cosine > 0.0 && (flags & material_double_sided) == 0u) return true;
+  if ((flags & material_alpha_mask) == 0u || (flags & material_whole_alpha) != 0u) return false;
   TextureLookup lookup = texture_lookup(t, twice_world_area, width, abs(cosine));
   return triangle_color(t, lookup).a < materials[t.material].alpha_cutoff;
 }

@@ -92,6 +92,17 @@ vec3 triangle_across(HitTriangle t) {
                transform_direction(t, t.c.position - t.a.position)) * t.handedness;
 }
 
+/// The front face's normal, of a triangle without area that of its vertices.
+vec3 front_normal(vec3 across, float twice_area, vec3 vertex_normal) {
+  return twice_area > 0.0 ? across / twice_area : vertex_normal;
+}
+
+vec3 interpolated_normal(HitTriangle t) {
+  return normalize(transform_normal(t, t.a.normal) * t.weights.x +
+                   transform_normal(t, t.b.normal) * t.weights.y +
+                   transform_normal(t, t.c.normal) * t.weights.z);
+}
+
 /// Where a texture is read: both uv sets, their areas (twice that of the triangle's image), and
 /// half the logarithm of the footprint's fraction of the triangle.
 struct TextureLookup {
@@ -229,12 +240,10 @@ HitSurface hit_surface(Hit hit, vec3 direction, float width) {
   HitSurface s;
   s.local = triangle_position(t);
   s.position = vec4(s.local, 1.0) * t.world;
-  vec3 vertex_normal = normalize(transform_normal(t, t.a.normal) * t.weights.x +
-                                 transform_normal(t, t.b.normal) * t.weights.y +
-                                 transform_normal(t, t.c.normal) * t.weights.z);
+  vec3 vertex_normal = interpolated_normal(t);
   vec3 across = triangle_across(t);
   float twice_world_area = length(across);
-  vec3 front = twice_world_area > 0.0 ? across / twice_world_area : vertex_normal;
+  vec3 front = front_normal(across, twice_world_area, vertex_normal);
   s.front = front;
   s.area = 0.5 * twice_world_area;
   float cosine = dot(front, direction);

@@ -227,7 +227,6 @@ TEST_F(OverlappingFramePlanTest, TheDeviceHasRoomForTheNextFrameBeforeTheEndOfOn
   plan_.finish();
 }
 
-// A plan's frames without `maybe` read its image in vain.
 TEST_F(FramePlanTest, WhatIsIgnoredWhenSkippedDoesNotHoldUpTheNextFrame) {
   if (device_.is_cpu()) GTEST_SKIP() << "processors have finished a frame when it has begun";
   for (const bool ignored : {false, true}) {

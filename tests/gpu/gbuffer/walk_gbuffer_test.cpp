@@ -253,6 +253,48 @@ TEST(WalkGBuffer, DrawsNoBacksHoweverManyThereAre) {
   EXPECT_EQ(both.passed(), 0u);
 }
 
+/// The scene with a clip that moves the instances of one mesh.
+std::shared_ptr<const scene::Scene> with_moving_mesh(const scene::Scene& scene,
+                                                     std::uint32_t mesh) {
+  auto copy = std::make_shared<scene::Scene>(scene);
+  scene::Clip& clip = copy->clips.emplace_back();
+  for (const scene::Instance& instance : copy->instances) {
+    if (instance.mesh == mesh) clip.channels.push_back({.node = instance.node});
+  }
+  return copy;
+}
+
+// They are traced beside what is drawn, and rays go on through their backs at once.
+TEST(WalkGBuffer, PassesBacksOfWhatMoves) {
+  SceneBuilder builder;
+  const auto pane = builder.add_quad({{{1, -1, 0}, {-1, -1, 0}, {-1, 1, 0}, {1, 1, 0}}},
+                                     surface({0.9f, 0.1f, 0.1f}));
+  for (const float z : {0.5f, 1.0f}) {
+    builder.place(pane, glm::translate(glm::mat4(1.0f), {0, 0, z}));
+  }
+  builder.place(builder.add_sphere(1.5f, surface({0.2f, 0.6f, 0.9f})),
+                glm::translate(glm::mat4(1.0f), {0, 0, -2}));
+  RoundsAndWalk both(with_moving_mesh(*builder.build(), pane), look({0, 0, 5}, {0, 0, 0}, 30.0f),
+                     {64, 64});
+  both.rig().run();
+  both.expect_equal("two panes");
+  EXPECT_EQ(both.shown_in_middle(), 3.0f) << "the sphere";
+  if (both.draws()) {
+    EXPECT_EQ(both.passed(), 0u);
+  }
+}
+
+// Where the nearest texel of a mask covers, the filtered one may not.
+TEST(WalkGBuffer, DrawsNoHolesOfFilteredMasks) {
+  const auto scene = textured_scene();
+  const scene::Camera camera = fitted_camera(*scene, false);
+  RoundsAndWalk both(scene, camera, {450, 300});
+  both.rig().run();
+  both.expect_equal("textured");
+  if (!both.draws()) GTEST_SKIP() << "camera rays are not drawn";
+  EXPECT_EQ(both.passed(), 0u);
+}
+
 TEST(WalkGBuffer, FollowsAnimatedMeshes) {
   const char* assets = std::getenv("HELIOGRAPH_TEST_ASSETS");
   if (!assets) GTEST_SKIP() << "HELIOGRAPH_TEST_ASSETS is not set";

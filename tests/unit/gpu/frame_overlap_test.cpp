@@ -123,17 +123,35 @@ TEST(FrameOverlap, WhatFramesHaveInTurnDelaysNone) {
   EXPECT_EQ(overlap_frames(passes, resources).parts.early, 2u);
 }
 
-// Of two chains, the second needs what is left from the end of the frame before.
-TEST(FrameOverlap, PassesThatNeedNothingComeFirstInTheirGroup) {
-  std::vector<PassUses> passes = {{{reading(5), writing(0)}},
-                                  {{writing(1)}},
-                                  {{reading(0), reading(1), writing(2)}},
-                                  {{reading(2), writing(3)}},
-                                  {{reading(3), writing(5)}}};
-  const FrameOverlap overlap = overlap_frames(passes, shared(6));
-  EXPECT_EQ(overlap.order.passes, (Numbers{1, 0, 2, 3, 4}));
+// The first of two chains needs what is left from the end of the frame before.
+TEST(FrameOverlap, PassesThatWaitComeBehindTheEarlyOnes) {
+  const std::vector<PassUses> passes = {
+      {{reading(5), writing(0)}}, {{writing(1)}},
+      {{reading(1), writing(6)}}, {{reading(0), reading(6), writing(2)}},
+      {{reading(2), writing(3)}}, {{reading(3), writing(4)}},
+      {{reading(4), writing(5)}}};
+  const FrameOverlap overlap = overlap_frames(passes, shared(7));
+  EXPECT_EQ(overlap.order.passes, (Numbers{1, 0, 2, 3, 4, 5, 6}));
+  EXPECT_EQ(barriers(overlap.order), (Numbers{0, 3, 4, 5, 6}));
   EXPECT_EQ(overlap.parts.early, 1u);
   EXPECT_EQ(overlap.parts.closed, 3u);
+}
+
+// Two groups would follow each other as before, with one more barrier.
+TEST(FrameOverlap, FramesThatWouldGainNothingAreWhole) {
+  const std::vector<PassUses> passes = {
+      {{reading(0), writing(1)}}, {{reading(0), writing(2)}}, {{reading(1), writing(3)}}};
+  const FrameOverlap overlap = overlap_frames(passes, shared(4));
+  EXPECT_EQ(overlap.parts.early, 0u);
+  EXPECT_EQ(overlap.order.passes, in_turn(3));
+}
+
+TEST(FrameOverlap, ChainsAreDividedInTheMiddle) {
+  auto resources = shared(8);
+  for (FrameResource& resource : resources) resource.can_be_doubled = true;
+  const FrameOverlap overlap = overlap_frames(chain(8), resources);
+  EXPECT_EQ(overlap.parts.early, 4u);
+  EXPECT_EQ(overlap.parts.closed, 4u);
 }
 
 TEST(FrameOverlap, PassesOnTheHostAreEarlyOnlyAtTheStart) {

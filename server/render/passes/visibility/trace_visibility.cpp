@@ -21,7 +21,7 @@ class VisibilityTrace {
         name_(name),
         kind_(kind),
         visibility_(plan.image(buffer.name, VK_FORMAT_R32_SFLOAT)) {
-    plan.ignore_when_skipped(visibility_);  // the frame's flags say so to whoever reads it
+    plan.ignore_when_skipped(visibility_);  // the frame's flags say so
   }
 
   gpu::ImageRef visibility() const { return visibility_; }
