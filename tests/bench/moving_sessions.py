@@ -88,7 +88,7 @@ async def measure(address, sessions, options):
     from harness.viewer import Viewer  # pylint: disable=import-outside-toplevel
     async with Viewer(address, greet=False) as closer:
         for name in names:
-            await closer.call("session.close", {"name": name})
+            await closer.call("session.close", {"session": name})
     return times
 
 
