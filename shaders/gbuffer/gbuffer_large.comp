@@ -17,7 +17,7 @@ void draw_part(DrawnPart part) {
   const ivec2 lane = ivec2(gl_LocalInvocationIndex & 7u, gl_LocalInvocationIndex >> 3u);
   const ivec2 first = unpacked(part.first);
   const ivec2 last = unpacked(part.last);
-  const Edges edges = edges_of(corners_from_eye(part.slot));
+  const Edges edges = edges_of(corners_from_eye(part.slot & ~drawn_edge_on_bit));
   for (int y = first.y; y <= last.y; y += 4) {
     for (int x = first.x; x <= last.x; x += 8) {
       if (!may_cover(edges, ivec2(x, y), ivec2(x + 7, y + 3))) continue;

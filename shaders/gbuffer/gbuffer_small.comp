@@ -74,17 +74,23 @@ bool drawn_elsewhere(uint slot) {
   return (floatBitsToUint(first.w) & bvh_again_bit) != 0u;
 }
 
-/// Whether the camera is behind a triangle of one side, so that is_open() lets its rays through, by
-/// more than the errors of the triangle's normal and of its place. Of corners_from_eye().
-bool seen_from_behind(uint slot, vec3 corners[3]) {
+// Which side of a triangle the camera sees.
+const int seen_front = 0;    // or both sides are drawn
+const int seen_back = 1;     // is_open() lets rays through
+const int seen_edge_on = 2;  // the camera is as near to its plane as the errors of normal and place
+
+/// Of corners_from_eye().
+int seen_side(uint slot, vec3 corners[3]) {
   const vec4 second = texelFetch(triangles, int(slot * bvh_texels_per_triangle) + 1);
-  if ((floatBitsToUint(second.w) & bvh_one_sided_bit) == 0u) return false;
+  if ((floatBitsToUint(second.w) & bvh_one_sided_bit) == 0u) return seen_front;
   const vec3 normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
   const vec3 forward = -frame.inverse_view[2].xyz;
   const vec3 toward = enabled(frame_orthographic) ? forward : corners[0];
   const float place_error = 4e-7 * (length(frame.eye.xyz) + length(corners[0]));
-  return dot(normal, toward) >
-         length(normal) * (1.5 * bvh_normal_error * length(toward) + place_error);
+  const float behind = dot(normal, toward);
+  const float error = length(normal) * (1.5 * bvh_normal_error * length(toward) + place_error);
+  if (abs(behind) <= error) return seen_edge_on;
+  return behind > 0.0 ? seen_back : seen_front;
 }
 
 // Parts that wait to be listed, so that a group counts them together.
@@ -166,15 +172,17 @@ void draw_small(uint slot, Edges edges, Pixels covered) {
 }
 
 void main() {
-  const uint slot = first_slot + gl_GlobalInvocationID.x;
+  uint slot = first_slot + gl_GlobalInvocationID.x;
   Pixels covered = Pixels(ivec2(0), ivec2(-1));
   Edges edges;
   if (gl_GlobalInvocationID.x < slots && !drawn_elsewhere(slot)) {
     const vec3 corners[3] = corners_from_eye(slot);
-    if (!seen_from_behind(slot, corners)) {
+    const int side = seen_side(slot, corners);
+    if (side != seen_back) {
       covered = covered_pixels(corners);
       edges = edges_of(corners);
     }
+    if (side == seen_edge_on) slot |= drawn_edge_on_bit;
   }
   const ivec2 size = max(covered.last - covered.first + 1, ivec2(0));
   const uint pixels = uint(size.x) * uint(size.y);

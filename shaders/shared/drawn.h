@@ -11,7 +11,7 @@ SHARED_CONSTANT uint drawn_part_side = 32u;
 
 // Of a triangle.
 struct DrawnPart {
-  uint slot;   // of the hierarchy's triangles
+  uint slot;   // of the hierarchy's triangles, with drawn_edge_on_bit (drawn_triangles.glsl)
   uint first;  // x | y << 16 of the first pixel
   uint last;   // and of the last
   uint padding0;

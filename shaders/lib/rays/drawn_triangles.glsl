@@ -86,7 +86,12 @@ bool may_cover(Edges edges, ivec2 first, ivec2 last) {
 
 bool may_cover(Edges edges, ivec2 pixel) { return may_cover(edges, pixel, pixel); }
 
-void draw_pixel(uint slot, ivec2 pixel) {
+// Beside the slot of a triangle that the camera sees nearly edge on: which side a ray meets is told
+// by the hit alone.
+const uint drawn_edge_on_bit = 0x80000000u;
+
+void draw_pixel(uint slot_and_bit, ivec2 pixel) {
+  const uint slot = slot_and_bit & ~drawn_edge_on_bit;
   const Ray ray = gbuffer_ray(pixel);
   const Line line = make_line(ray.origin, ray.direction);
   vec3 tuv;
@@ -94,8 +99,9 @@ void draw_pixel(uint slot, ivec2 pixel) {
   if (!triangle_hit(slot, line, vec2(ray.t_min, ray.t_max), tuv, words)) return;
   const uvec3 numbers = words & bvh_number_mask;
   blending = 0u;  // blended surfaces stop the ray
-  if (words.z != bvh_no_link) {
-    if (!mask_stops(numbers.z, tuv, numbers.y, numbers.x)) return;
+  const bool masked = words.z != bvh_no_link;
+  if (masked && !mask_stops(numbers.z, tuv, numbers.y, numbers.x)) return;
+  if (masked || slot != slot_and_bit) {
     Hit hit = no_hit(ray);
     set_hit(tuv, words, hit);
     if (is_open(hit, ray.direction, cone_width(camera_cone(), hit.t))) return;

@@ -285,6 +285,28 @@ TEST(WalkGBuffer, PassesBacksOfWhatMoves) {
   }
 }
 
+// Too near to their plane for the triangle alone to tell which side the camera sees.
+TEST(WalkGBuffer, DrawsNoBacksThatAreNearlyEdgeOn) {
+  constexpr float below = 0.015f;
+  SceneBuilder builder;
+  builder.place(
+      builder.add_quad({{{-1, -below, 1}, {-1, -below, -1}, {1, -below, -1}, {1, -below, 1}}},
+                       surface({0.9f, 0.1f, 0.1f})));
+  builder.place(builder.add_sphere(3.0f, surface({0.2f, 0.6f, 0.9f})),
+                glm::translate(glm::mat4(1.0f), {0, 0, -6}));
+  const auto scene = builder.build();
+  for (const bool shows_back : {true, false}) {
+    const float side = shows_back ? 1.0f : -1.0f;
+    RoundsAndWalk both(scene, look({0, (side - 1.0f) * below, 5}, {0, -below, 0}, 0.5f), {64, 64});
+    both.rig().run();
+    both.expect_equal(shows_back ? "back" : "front");
+    EXPECT_EQ(both.shown_in_middle(), shows_back ? 2.0f : 1.0f);
+    if (both.draws()) {
+      EXPECT_EQ(both.passed(), 0u);
+    }
+  }
+}
+
 /// A checkered mask with linear filters in front of a sphere.
 std::shared_ptr<const scene::Scene> filtered_mask() {
   SceneBuilder builder;
