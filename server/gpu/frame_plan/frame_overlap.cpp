@@ -9,8 +9,8 @@ namespace {
 
 constexpr std::uint32_t the_whole_frame = std::numeric_limits<std::uint32_t>::max();
 
-/// How much of the frame before must be done, as the number of steps from its start: whatever each
-/// of its passes has as its step.
+/// How much of the frame before must be done, as the number of steps from its start. Steps are the
+/// groups or the places of its passes, as given for each.
 class FrameBefore {
  public:
   FrameBefore(std::span<const PassUses> passes, std::span<const std::uint32_t> steps,
@@ -127,7 +127,7 @@ FrameOverlap overlap_frames(std::span<const PassUses> passes,
   FrameOverlap best{.order = overlapping_order(passes)};
   std::size_t least = groups_in_turn(best, passes);
   const std::uint32_t all = groups.empty() ? 0 : *std::ranges::max_element(groups) + 1;
-  // The frame before is closed behind so many groups, or few more.
+  // The next frame begins behind so many groups of this order, or later: early passes change it.
   for (std::uint32_t closed = 1; closed < all; ++closed) {
     std::vector<bool> wanted(passes.size());
     for (std::size_t i = 0; i < passes.size(); ++i) {

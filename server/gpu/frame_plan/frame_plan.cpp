@@ -320,8 +320,8 @@ const Buffer& FramePlan::latest(BufferRef buffer) const {
 std::uint32_t FramePlan::slot_of_latest(const Resource& resource) const {
   const auto& [even, odd] = resource.written;
   if (!resource.doubled || std::max(even, odd) == 0) return finished_;
-  if (std::max(even, odd) > finished_frame_) return even < odd ? 0 : 1;
-  return even < odd ? 1 : 0;
+  const bool newer_is_finished = std::max(even, odd) <= finished_frame_;
+  return (even < odd) == (newer_is_finished || std::min(even, odd) == 0) ? 1 : 0;
 }
 
 std::vector<std::uint8_t> FramePlan::read() {

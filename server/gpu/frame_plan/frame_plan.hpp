@@ -200,7 +200,8 @@ class FramePlan {
 
   const Image& get(ImageRef image) const;  // this frame's image of a history
   const Buffer& get(BufferRef buffer) const;
-  /// The image written by the frame that was finished last.
+  /// The image written by the frame that was finished last; of those that frames have in turn the
+  /// newest that a finished frame has written.
   const Image& latest(ImageRef image) const;
   /// Likewise of returned().
   const Buffer& latest(BufferRef buffer) const;
@@ -262,8 +263,9 @@ class FramePlan {
   void check_pass(const Pass& pass) const;
   void make_programs();
   void order_passes();
-  /// As the frame before left them, by number; and which of them are the same, with their uses.
+  /// By number.
   std::vector<FrameResource> frame_resources() const;
+  /// As declared; what is imported twice is one resource.
   std::vector<PassUses> pass_uses() const;
   bool can_be_doubled(std::uint32_t index) const;
   /// Of the newest finished frame that has written it.

@@ -87,9 +87,14 @@ bool FramePlan::can_begin_another() const {
 
 float FramePlan::part_before_next() const {
   if (parts_.early == 0 || begun_.empty() || begun_.front().timed) return 1.0f;
-  const float all = time_of(0, passes_.size());
+  // On one queue frames run one after the other.
+  if (draws_ || device_.queues().compute_count() < 2) return 1.0f;
+  const float start = time_of(0, parts_.early), end = time_of(parts_.closed, passes_.size());
+  const float between = time_of(parts_.early, parts_.closed);
+  const float all = start + between + end;
   if (all <= 0.0f) return 1.0f;
-  return time_of(begun_.front().follows ? parts_.early : 0, parts_.closed) / all;
+  // The end of the frame before has hidden as much of the start.
+  return (between + (begun_.front().follows ? std::max(start - end, 0.0f) : start)) / all;
 }
 
 /// Milliseconds, of the passes at these places of the order that ran.

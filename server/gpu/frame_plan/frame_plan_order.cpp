@@ -28,7 +28,6 @@ void FramePlan::order_passes() {
 }
 
 std::vector<PassUses> FramePlan::pass_uses() const {
-  // What is imported twice is one resource.
   std::map<std::pair<const Image*, const Buffer*>, std::uint32_t> known;
   const auto physical = [&](Use use) {
     const Resource& resource = resources_[use.resource];

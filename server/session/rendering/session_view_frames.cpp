@@ -15,8 +15,8 @@ namespace {
 
 /// Histories are measured in seconds. After a pause the time since the last frame means nothing.
 constexpr float max_frame_seconds = 1.0f;
-/// The device has the next frame before it is done with the one before, and that is drawn with
-/// input as new as can be.
+/// The device has the next frame before it has room for it, and that is drawn with input as new as
+/// can be.
 constexpr std::chrono::microseconds time_to_begin{800};
 
 std::uint32_t microseconds_of(Clock::duration duration) {

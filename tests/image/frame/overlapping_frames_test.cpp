@@ -60,12 +60,11 @@ class OverlappingFrames : public testing::Test {
 TEST_F(OverlappingFrames, AreThoseDrawnOneAfterTheOther) {
   using Source = protocol::PrimaryVisibility;
   for (const auto ground : {protocol::GroundUse::off, protocol::GroundUse::on}) {
-    for (const Source source : {Source::raster, Source::rays}) {
+    for (const Source source : {Source::automatic, Source::raster, Source::rays}) {
       protocol::Settings settings = without_indirect();
       settings.background.ground = ground;
       settings.gbuffer.source = source;
-      const std::string name = std::string("overlapping_") +
-                               (source == Source::rays ? "rays" : "raster") +
+      const std::string name = "overlapping_" + std::string(protocol::enum_name(source)) +
                                (ground == protocol::GroundUse::on ? "_ground" : "");
       SCOPED_TRACE(name);
       const render::Frame alone = move(settings, false), together = move(settings, true);
