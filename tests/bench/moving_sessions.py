@@ -11,38 +11,23 @@ Sessions are copies of main, and their viewers run in processes of their own, se
 import argparse
 import asyncio
 import importlib.util
-import math
 import multiprocessing
 import os
 import statistics
 import sys
+import time
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
 sys.path.insert(0, os.path.join(HERE, "..", "protocol"))
 
-from opening import INPUT_EVERY, SKIPPED, TIMEOUT, Address, configure, size_of  # noqa: E402
+from opening import SKIPPED, TIMEOUT, Address, add_server_arguments, configure, move, start_server  # noqa: E402
 
 VIEWERS_IN_A_PROCESS = 2
 
 
-async def move(viewer, stages):
-    """When each frame came that was rendered between the two stages."""
-    eye = (await viewer.call("camera.get"))["eye"]
-    angle, times = 0.0, []
-    while not stages.ends.is_set():
-        angle += 0.05
-        await viewer.notify("camera.set", {"eye": [eye[0] + 0.3 * math.sin(angle), eye[1],
-                                                   eye[2] + 0.3 * math.cos(angle)]})
-        await asyncio.sleep(INPUT_EVERY)
-        while not viewer.frames.empty():
-            frame = viewer.frames.get_nowait()
-            if stages.begins.is_set():
-                times.append(frame.received_at)
-    return times
-
-
-def watch(address, names, size, stages, results):
+def watch(address, names, size, ends, results):
+    """Puts each name when its session shows something, and the times of its frames in the end."""
     from harness.viewer import Viewer  # pylint: disable=import-outside-toplevel
 
     async def run(name):
@@ -52,26 +37,19 @@ def watch(address, names, size, stages, results):
             await configure(viewer, size)
             await viewer.next_frame(timeout=TIMEOUT)
             results.put(name)
-            results.put(await move(viewer, stages))
+            results.put(await move(viewer, ends))
 
     async def run_all():
         await asyncio.gather(*[run(name) for name in names])
     asyncio.run(run_all())
 
 
-class Stages:
-    """Events that the processes share: frames count between them."""
-
-    def __init__(self, context):
-        self.begins, self.ends = context.Event(), context.Event()
-
-
 async def measure(address, sessions, options):
     """Times of frames, a list for each session."""
     context = multiprocessing.get_context("spawn")
-    stages, results = Stages(context), context.Queue()
+    ends, results = context.Event(), context.Queue()
     names = [f"moving-{sessions}-{i}" for i in range(sessions)]
-    processes = [context.Process(target=watch, args=(address, names[i:i + VIEWERS_IN_A_PROCESS], options.size, stages,
+    processes = [context.Process(target=watch, args=(address, names[i:i + VIEWERS_IN_A_PROCESS], options.size, ends,
                                                      results), daemon=True)
                  for i in range(0, sessions, VIEWERS_IN_A_PROCESS)]
     for process in processes:
@@ -79,17 +57,18 @@ async def measure(address, sessions, options):
     for _ in names:
         results.get(timeout=TIMEOUT)
     await asyncio.sleep(options.settle)
-    stages.begins.set()
+    begin = time.monotonic()
     await asyncio.sleep(options.seconds)
-    stages.ends.set()
-    times = [results.get(timeout=TIMEOUT) for _ in names]
+    end = time.monotonic()
+    ends.set()
+    found = [results.get(timeout=TIMEOUT) for _ in names]
     for process in processes:
         process.join(TIMEOUT)
     from harness.viewer import Viewer  # pylint: disable=import-outside-toplevel
     async with Viewer(address, greet=False) as closer:
         for name in names:
             await closer.call("session.close", {"session": name})
-    return times
+    return [[received for _, received in session if begin <= received <= end] for session in found]
 
 
 def summary(times, seconds):
@@ -101,22 +80,18 @@ def summary(times, seconds):
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    add_server_arguments(parser)
     parser.add_argument("--sessions", type=int, nargs="+", default=[16], help="one measurement for each number")
-    parser.add_argument("--size", type=size_of, default=(1280, 720))
     parser.add_argument("--settle", type=float, default=3.0, help="seconds before frames count")
     parser.add_argument("--seconds", type=float, default=8.0, help="in which they count")
-    parser.add_argument("--scene-root", required=True)
     parser.add_argument("--least-frames", type=float, help="a second, of all sessions")
     parser.add_argument("--least-slowest", type=float, help="a second, of the slowest session")
-    parser.add_argument("arguments", nargs="*", help="behind --: those of heliograph serve")
     options = parser.parse_args()
     if not importlib.util.find_spec("websockets"):
         print("skipped: python3-websockets is not installed")
         return SKIPPED
-    from harness.server import Server  # pylint: disable=import-outside-toplevel
     missed = False
-    with Server("--max-sessions", str(max(options.sessions) + 1), "--set", "reference.use=off", *options.arguments,
-                scenes=options.scene_root) as server:
+    with start_server(options, max(options.sessions)) as server:
         for sessions in options.sessions:
             found = summary(asyncio.run(measure(Address(server.host, server.port), sessions, options)),
                             options.seconds)

@@ -145,22 +145,31 @@ def size_of(text):
     return int(width), int(height)
 
 
+def add_server_arguments(parser):
+    parser.add_argument("--size", type=size_of, default=(1280, 720))
+    parser.add_argument("--scene-root", required=True)
+    parser.add_argument("arguments", nargs="*", help="behind --: those of heliograph serve")
+
+
+def start_server(options, sessions):
+    """With room for as many beside main."""
+    from harness.server import Server  # pylint: disable=import-outside-toplevel
+    return Server("--max-sessions", str(sessions + 1), "--set", "reference.use=off", *options.arguments,
+                  scenes=options.scene_root)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    add_server_arguments(parser)
     parser.add_argument("--sessions", type=int, default=16)
-    parser.add_argument("--size", type=size_of, default=(1280, 720))
     parser.add_argument("--settle", type=float, default=6.0, help="seconds in which one viewer is alone")
-    parser.add_argument("--scene-root", required=True)
     parser.add_argument("--most-gap-ms", type=float, help="of rendered frames")
     parser.add_argument("--most-first-s", type=float, help="of the last session")
-    parser.add_argument("arguments", nargs="*", help="behind --: those of heliograph serve")
     options = parser.parse_args()
     if not importlib.util.find_spec("websockets"):
         print("skipped: python3-websockets is not installed")
         return SKIPPED
-    from harness.server import Server  # pylint: disable=import-outside-toplevel
-    with Server("--max-sessions", str(options.sessions + 1), "--set", "reference.use=off", *options.arguments,
-                scenes=options.scene_root) as server:
+    with start_server(options, options.sessions) as server:
         result = measure(Address(server.host, server.port), options)
     print(f"{options.sessions} sessions of {options.size[0]}x{options.size[1]} opened at once: first frames after "
           f"{result['first_median_s']:.2f} s, the last {result['first_last_s']:.2f} s; longest gap of the viewer who "
