@@ -4,6 +4,8 @@
 #include <limits>
 #include <set>
 
+#include "gpu/frame_plan/used_resources.hpp"
+
 namespace heliograph::gpu {
 namespace {
 
@@ -52,22 +54,16 @@ class FrameBefore {
 /// Those of the `wanted` passes, by number, that need nothing of others in their own frame: of
 /// passes that are not wanted, or of the device on the host.
 std::vector<bool> without_needs(std::span<const PassUses> passes, std::vector<bool> wanted) {
-  std::set<std::uint32_t> read;  // by the others
-  std::set<std::uint32_t> written;
+  UsedResources others;
   bool behind_device = false;
   bool behind_host = false;  // that is not wanted
   for (std::size_t i = 0; i < passes.size(); ++i) {
-    const bool needs = std::ranges::any_of(passes[i].uses, [&](const Use& use) {
-      return written.contains(use.resource) || (writes(use) && read.contains(use.resource));
-    });
-    wanted[i] = wanted[i] && !needs && !behind_host && !(passes[i].on_host && behind_device);
+    wanted[i] = wanted[i] && !others.hold_up(passes[i]) && !behind_host &&
+                !(passes[i].on_host && behind_device);
     behind_device |= !passes[i].on_host;
     if (wanted[i]) continue;
     behind_host |= passes[i].on_host;
-    for (const Use& use : passes[i].uses) {
-      if (reads(use)) read.insert(use.resource);
-      if (writes(use)) written.insert(use.resource);
-    }
+    others.add(passes[i]);
   }
   return wanted;
 }

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <numeric>
-#include <set>
 #include <unordered_map>
 #include <utility>
+
+#include "gpu/frame_plan/used_resources.hpp"
 
 namespace heliograph::gpu {
 namespace {
@@ -69,24 +70,15 @@ void sort_by_groups(std::span<std::uint32_t> part, std::span<const PassUses> pas
 
 PassOrder declared_order(std::span<const PassUses> passes) {
   PassOrder order = in_turn(passes.size());
-  std::set<std::uint32_t> read;
-  std::set<std::uint32_t> written;
+  UsedResources used;  // since the last barrier
   for (std::size_t i = 0; i < passes.size(); ++i) {
     const PassUses& pass = passes[i];
-    const bool hazard = std::ranges::any_of(pass.uses, [&](const Use& use) {
-      return written.contains(use.resource) || (writes(use) && read.contains(use.resource));
-    });
     // A submit lies before and after a host pass, which orders everything.
-    if (hazard || pass.on_host) {
+    if (pass.on_host || used.hold_up(pass)) {
       order.barrier_before[i] = !pass.on_host;
-      read.clear();
-      written.clear();
+      used.clear();
     }
-    if (pass.on_host) continue;
-    for (const Use& use : pass.uses) {
-      if (reads(use)) read.insert(use.resource);
-      if (writes(use)) written.insert(use.resource);
-    }
+    if (!pass.on_host) used.add(pass);
   }
   return order;
 }

@@ -82,17 +82,11 @@ void draw_camera_rays(gpu::FramePlan& plan, const FrameInputs& in,
       .bind<GBufferLargeBindings>({.drawn = drawn, .parts = parts})
       .constants(most_parts)
       .dispatch({groups_of_parts * 32, 1});
-  const GBufferDrawnBindings<gpu::Declared> all{.drawn = drawn, .hits = hits};
-  if (hierarchy.flat.all) {
-    plan.pass("gbuffer.drawn", in.program(shaders::gbuffer_drawn))
-        .bind<GBufferDrawnBindings>(all)
-        .dispatch(gpu::each_pixel());
-  } else {
-    plan.pass("gbuffer.drawn", in.program(shaders::gbuffer_drawn_beside))
-        .bind<GBufferDrawnBindings>(all)
-        .constants(hierarchy.root)
-        .dispatch(gpu::each_pixel());
-  }
+  const bool all = hierarchy.flat.all;
+  gpu::PassBuilder pass = plan.pass(
+      "gbuffer.drawn", in.program(all ? shaders::gbuffer_drawn : shaders::gbuffer_drawn_beside));
+  pass.bind<GBufferDrawnBindings>({.drawn = drawn, .hits = hits}).dispatch(gpu::each_pixel());
+  if (!all) pass.constants(hierarchy.root);
   trace_camera_rays(plan, in, hierarchy, drawn.hierarchy, hits)
       .dispatch_indirect(parts, trace_groups_offset);
 }
