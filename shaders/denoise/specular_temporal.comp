@@ -19,18 +19,17 @@ layout(set = 1, binding = 2, r32ui) readonly uniform uimage2D instance;
 layout(set = 1, binding = 3, rgba32f) readonly uniform image2D reprojection;
 layout(set = 1, binding = 4, rgba32f) readonly uniform image2D previous_normals;
 layout(set = 1, binding = 5, rgba8) readonly uniform image2D previous_surface;
-layout(set = 1, binding = 6, rgba32f) readonly uniform image2D previous_motion;
-layout(set = 1, binding = 7, r32ui) readonly uniform uimage2D previous_instance;
-layout(set = 1, binding = 8, rgba16f) readonly uniform image2D previous_signal;
-layout(set = 1, binding = 9, rgba16f) readonly uniform image2D previous_history;
-layout(set = 1, binding = 10, rgba16f) readonly uniform image2D previous_fast;
-layout(set = 1, binding = 11, rgba32f) readonly uniform image2D percentiles;  // of tiles, or anything
-layout(set = 1, binding = 12, rgba32f) writeonly uniform image2D signal;   // radiance, variance
-layout(set = 1, binding = 13, rgba16f) writeonly uniform image2D kept;     // radiance, distance
+layout(set = 1, binding = 6, r32ui) readonly uniform uimage2D previous_instance;
+layout(set = 1, binding = 7, rgba16f) readonly uniform image2D previous_signal;
+layout(set = 1, binding = 8, rgba16f) readonly uniform image2D previous_history;
+layout(set = 1, binding = 9, rgba16f) readonly uniform image2D previous_fast;
+layout(set = 1, binding = 10, rgba32f) readonly uniform image2D percentiles;  // of tiles, or anything
+layout(set = 1, binding = 11, rgba32f) writeonly uniform image2D signal;   // radiance, variance
+layout(set = 1, binding = 12, rgba16f) writeonly uniform image2D kept;     // radiance, distance
 // Frames, how far rectification moved the mean, mean and deviation of the brightness of samples.
-layout(set = 1, binding = 14, rgba16f) writeonly uniform image2D history;
+layout(set = 1, binding = 13, rgba16f) writeonly uniform image2D history;
 // The last few frames or the change; the raw distance.
-layout(set = 1, binding = 15, rgba16f) writeonly uniform image2D fast;
+layout(set = 1, binding = 14, rgba16f) writeonly uniform image2D fast;
 layout(push_constant) uniform Constants { TemporalConstants constants; };
 
 #include "lib/denoise/percentile_tiles.glsl"
@@ -54,6 +53,38 @@ struct Surface {
 vec4 sample_at(ivec2 pixel) {
   vec4 texel = imageLoad(raw, pixel);
   return vec4(sanitize(texel.rgb), sanitize(texel.w));
+}
+
+// Of the group's pixels and those around them: the texels of images that many pixels want take
+// longest to read.
+const int group_side = 8;
+const int side = group_side + 2;
+shared float distances[side * side];  // of hits; 0 outside the frame
+shared uint instances[side * side];   // 0 outside the frame
+shared vec4 guides[side * side];
+
+int place_of(ivec2 offset) {
+  ivec2 place = ivec2(gl_LocalInvocationID.xy) + 1 + offset;
+  return place.y * side + place.x;
+}
+
+/// Whether this frame looks for where reflections were.
+bool follows_reflections() {
+  const uint needed = temporal_history_valid | temporal_virtual_motion;
+  return (constants.flags & needed) == needed;
+}
+
+/// By all invocations.
+void read_surroundings() {
+  ivec2 corner = ivec2(gl_WorkGroupID.xy) * group_side - 1;
+  for (int i = int(gl_LocalInvocationIndex); i < side * side; i += group_side * group_side) {
+    ivec2 tap = corner + ivec2(i % side, i / side);
+    bool shown = inside(tap, ivec2(frame.extent));
+    distances[i] = shown ? abs(sanitize(imageLoad(raw, tap).w)) : 0.0;
+    instances[i] = shown ? imageLoad(instance, tap).r : 0u;
+    guides[i] = shown ? imageLoad(guide, tap) : vec4(0.0);
+  }
+  barrier();
 }
 
 HistorySample no_history() { return HistorySample(vec3(0.0), 0.0, vec2(0.0), vec3(0.0)); }
@@ -83,32 +114,29 @@ HistorySample fetch_history(HistoryTaps taps) {
   HistorySample history = no_history();
   // The gradient compares with the long history alone.
   bool gradient = constants.rectification == rectification_gradient;
+  bool bicubic = taps.whole && (constants.flags & temporal_bicubic) != 0u;
   for (int i = 0; i < 4; ++i) {
     float weight = taps.weights[i];
     if (weight <= 0.0) continue;
     ivec2 tap = taps.base + tap_offset(i);
     vec4 state = imageLoad(previous_history, tap);
-    history.radiance += weight * imageLoad(previous_signal, tap).rgb;
+    if (!bicubic) history.radiance += weight * imageLoad(previous_signal, tap).rgb;
     history.frames += weight * state.x;
     history.moments += weight * vec2(state.z, dot(state.zw, state.zw));
     if (!gradient) history.fast += weight * imageLoad(previous_fast, tap).rgb;
   }
-  if (taps.whole && (constants.flags & temporal_bicubic) != 0u) {
-    history.radiance = fetch_history_bicubic(taps);
-  }
+  if (bicubic) history.radiance = fetch_history_bicubic(taps);
   return history;
 }
 
 /// The shortest of the neighbours' hit distances on the same kind of surface: one sample's own is
 /// as noisy as its radiance, and a reflection sharpens toward what touches it. Where no sample was
 /// taken the distance of the frame before stands, negated.
-float hit_distance(ivec2 pixel) {
+float hit_distance() {
   float nearest = 1e9;
   for (int y = -1; y <= 1; ++y) {
     for (int x = -1; x <= 1; ++x) {
-      ivec2 tap = pixel + ivec2(x, y);
-      if (!inside(tap, ivec2(frame.extent))) continue;
-      float hit = abs(sample_at(tap).w);
+      float hit = distances[place_of(ivec2(x, y))];
       if (hit > 0.0) nearest = min(nearest, hit);
     }
   }
@@ -124,14 +152,15 @@ struct Curvature {
 
 Curvature local_curvature(Surface s, vec3 position) {
   if ((constants.flags & temporal_curved_reflectors) == 0u) return Curvature(0.0, 0.0);
-  uint own = imageLoad(instance, s.pixel).r;
+  uint own = instances[place_of(ivec2(0))];
   vec2 sum = vec2(0.0);
   float count = 0.0;
   for (int i = 0; i < 4; ++i) {
-    ivec2 beside = s.pixel + (i < 2 ? ivec2(2 * i - 1, 0) : ivec2(0, 2 * i - 5));
-    if (!inside(beside, ivec2(frame.extent)) || imageLoad(instance, beside).r != own) continue;
-    Guide neighbour = decode_guide(imageLoad(guide, beside));
-    vec3 step = world_position(beside, neighbour.view_z) - position;
+    ivec2 offset = i < 2 ? ivec2(2 * i - 1, 0) : ivec2(0, 2 * i - 5);
+    int beside = place_of(offset);
+    if (instances[beside] != own) continue;
+    Guide neighbour = decode_guide(guides[beside]);
+    vec3 step = world_position(s.pixel + offset, neighbour.view_z) - position;
     vec3 normal_change = neighbour.normal - s.normal;
     sum += vec2(dot(normal_change, step) / max(dot(step, step), 1e-20), length(normal_change));
     count += 1.0;
@@ -151,7 +180,7 @@ vec2 motion_of(vec3 point) {
 /// than across it (Coddington's equations), and each determines the motion along its own axis.
 vec2 virtual_motion(Surface s, vec3 position, float curvature) {
   vec3 eye = to_eye(s.pixel);
-  float far = hit_distance(s.pixel), dominant_factor = specular_dominant_factor(s.roughness);
+  float far = hit_distance(), dominant_factor = specular_dominant_factor(s.roughness);
   float cosine = clamp(dot(s.normal, eye), reflector_min_cosine, 1.0);
   vec2 within =
       motion_of(position - eye * (dominant_factor * virtual_distance(far, curvature / cosine)));
@@ -164,12 +193,10 @@ vec2 virtual_motion(Surface s, vec3 position, float curvature) {
 }
 
 /// Whether `pixel` of the frame before shows the same reflector: the surface is compared, not the
-/// depth of what it reflects.
+/// depth of what it reflects. Pixels that show none have no instance.
 bool shows_reflector(ivec2 pixel, Surface s, float normal_change) {
   if (!inside(pixel, ivec2(frame.extent))) return false;
-  if (imageLoad(previous_instance, pixel).r != imageLoad(instance, s.pixel).r) return false;
-  float previous_z = imageLoad(previous_motion, pixel).w;
-  if (previous_z <= 0.0) return false;
+  if (imageLoad(previous_instance, pixel).r != instances[place_of(ivec2(0))]) return false;
   vec3 normal = octahedral_decode(imageLoad(previous_normals, pixel).xy);
   float roughness = imageLoad(previous_surface, pixel).r;
   return same_reflector(dot(normal, s.normal), s.roughness, roughness, normal_change);
@@ -213,7 +240,7 @@ HistorySample reprojected_history(Surface s) {
   if ((constants.flags & temporal_history_valid) == 0u) return no_history();
   vec4 map = imageLoad(reprojection, s.pixel);
   HistoryTaps own = valid_taps(bilinear_taps(map.xy), uint(map.z));
-  if ((constants.flags & temporal_virtual_motion) == 0u) return fetch_history(own);
+  if (!follows_reflections()) return fetch_history(own);
   vec3 position = world_position(s.pixel, s.view_z);
   Curvature curvature = local_curvature(s, position);
   vec2 motion = virtual_motion(s, position, curvature.curvature);
@@ -246,6 +273,7 @@ float max_history_frames(float roughness) {
 
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
+  if (follows_reflections()) read_surroundings();
   if (outside_frame(pixel)) return;
   vec4 guided = imageLoad(guide, pixel);
   vec4 raw_sample = sample_at(pixel);

@@ -64,18 +64,17 @@ HistorySample fetch_history(ivec2 pixel) {
   HistoryTaps taps = valid_taps(bilinear_taps(map.xy), uint(map.z));
   // The gradient compares with the long history alone.
   bool gradient = constants.rectification == rectification_gradient;
+  bool bicubic = taps.whole && (constants.flags & temporal_bicubic) != 0u;
   for (int i = 0; i < 4; ++i) {
     float weight = taps.weights[i];
     if (weight <= 0.0) continue;
     ivec2 tap = taps.base + tap_offset(i);
-    history.signal += weight * imageLoad(previous_signal, tap).xy;
+    if (!bicubic) history.signal += weight * imageLoad(previous_signal, tap).xy;
     history.moments += weight * imageLoad(previous_moments, tap);
     history.frames += weight * imageLoad(previous_history, tap).xy;
     if (!gradient) history.fast += weight * imageLoad(previous_fast, tap).xy;
   }
-  if (taps.whole && (constants.flags & temporal_bicubic) != 0u) {
-    history.signal = fetch_history_bicubic(taps);
-  }
+  if (bicubic) history.signal = fetch_history_bicubic(taps);
   return history;
 }
 

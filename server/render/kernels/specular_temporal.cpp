@@ -196,7 +196,6 @@ class SpecularAccumulation {
     const TexelGather<D> texels = bounds_.gather(x, y);
     const auto shown = hn::Eq(texels.word(job_.previous_instance), own);
     M same = hn::And(candidates, hn::RebindMask(d_, shown));
-    same = hn::And(same, hn::Gt(texels.last_of_four(job_.previous_motion), hn::Zero(d_)));
     const Pair<V> encoded = texels.first_two(job_.previous_normals);
     const V cosine = dot(octahedral_decode(encoded.x, encoded.y), s.normal);
     const V by_curvature = hn::NegMulAdd(set(2.0f) * normal_change, normal_change, set(1.0f));

@@ -21,7 +21,7 @@ using TemporalVisibilityJob = FrameJob<TemporalVisibilityBindings, shared::Tempo
 template <class Stage>
 struct TemporalSpecularBindings {
   gpu::Read<Stage> noisy, guide, instance, reprojection;
-  gpu::Read<Stage> previous_normals, previous_surface, previous_motion, previous_instance;
+  gpu::Read<Stage> previous_normals, previous_surface, previous_instance;
   gpu::Read<Stage> previous_history, previous_history_length, previous_fast_history;
   gpu::Read<Stage> percentiles;  // not by the kernel
   gpu::Write<Stage> signal, history, history_length, fast_history;

@@ -147,7 +147,6 @@ AccumulatedSignal accumulate_radiance(gpu::FramePlan& plan, const FrameInputs& i
                                                 .reprojection = guide.reprojection,
                                                 .previous_normals = gbuffer.previous_normals,
                                                 .previous_surface = gbuffer.previous_surface,
-                                                .previous_motion = gbuffer.previous_motion,
                                                 .previous_instance = gbuffer.previous_instance,
                                                 .previous_history = history.previous,
                                                 .previous_history_length = history_length.previous,
