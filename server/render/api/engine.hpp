@@ -81,7 +81,9 @@ class Engine {
   bool encodes_jpeg() const;
   std::uint32_t max_image_size() const;  // pixels, either side
   std::uint64_t validation_messages() const;
-  /// So many frames of different renderers the device draws at the same time: 1 on processors.
+  /// So many frames of different renderers the device has at the same time: on GPUs with queues for
+  /// compute alone one for each and half as many that wait, so that no queue is idle while the
+  /// processor begins another frame; otherwise 1.
   std::size_t frames_at_once() const;
   /// How often commands were given to the device since the start, to lost ones before it too.
   std::uint64_t submissions() const;

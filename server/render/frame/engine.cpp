@@ -156,7 +156,8 @@ std::size_t Engine::frames_at_once() const {
   const auto parts = current();
   // Queues for compute alone draw no triangles.
   const bool computes = rays_find_gbuffer_sooner(parts->device.report(), parts->tracer->kind());
-  return computes ? parts->device.queues().compute_count() : 1;
+  const std::size_t queues = computes ? parts->device.queues().compute_count() : 1;
+  return queues + queues / 2;
 }
 
 std::uint64_t Engine::submissions() const {
