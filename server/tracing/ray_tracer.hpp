@@ -96,6 +96,12 @@ struct WalkedHierarchy {
   const gpu::Buffer& triangles;
   const gpu::Buffer& alpha_heap;
   std::function<std::uint32_t()> root;  // of this frame
+  /// Nodes of the upper level, whose children are instances or one another.
+  struct UpperNodes {
+    std::uint32_t first = 0;  // of `records`, shared::BvhNode each
+    std::uint32_t count = 0;
+  };
+  std::function<UpperNodes()> upper_nodes;  // of this frame
   /// Triangles in world space, which never move: a part of `triangles`, shared::BvhTriangle each.
   struct Flat {
     std::uint32_t first = 0;

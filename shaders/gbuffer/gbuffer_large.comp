@@ -7,7 +7,6 @@ layout(local_size_x = 32) in;
 
 layout(set = 1, binding = 4, std430) readonly buffer Parts {
   uint part_count;
-  uint trace_groups[3];
   DrawnPart parts[];
 };
 layout(push_constant) uniform Constants { uint most_parts; };
@@ -30,7 +29,7 @@ void draw_part(DrawnPart part) {
 
 void main() {
   begin_drawing();
-  if (part_count > most_parts) return;  // all rays are traced then
+  if (part_count > most_parts) return;  // gbuffer_beside.comp traces all
   for (uint i = gl_WorkGroupID.x; i < part_count; i += gl_NumWorkGroups.x) draw_part(parts[i]);
   draw_queued(true);
 }

@@ -7,7 +7,6 @@ layout(local_size_x = 64) in;
 
 layout(set = 1, binding = 4, std430) buffer Parts {
   uint part_count;
-  uint trace_groups[3];
   DrawnPart parts[];
 };
 layout(push_constant) uniform Constants {
@@ -19,53 +18,22 @@ layout(push_constant) uniform Constants {
 shared uint group_first;   // of the parts that it lists next
 shared uint group_pixels;  // of its largest small triangle
 
-/// A rectangle of pixels; empty where `last` is less than `first`.
-struct Pixels {
-  ivec2 first;
-  ivec2 last;
-};
-
 struct Large {
   uint slot;
   Pixels covered;
   Edges edges;
 };
 
-/// Where the camera shows a place in view space, in pixels: whole numbers are their samples.
-vec2 shown_at(vec3 view) {
-  const vec2 slope = enabled(frame_orthographic) ? view.xy : view.xy / -view.z;
-  const vec2 ndc = (slope - frame.unproject.zw) / frame.unproject.xy;
-  return (0.5 + 0.5 * ndc) * vec2(frame.extent) - 0.5;
-}
-
 /// Those whose samples the triangle may cover; of corners_from_eye().
 Pixels covered_pixels(vec3 corners[3]) {
-  const float near = enabled(frame_orthographic) ? -1e30 : camera_near_plane();
-  vec2 low = vec2(1e30);
-  vec2 high = vec2(-1e30);
+  const float near = shown_near_plane();
+  Shown shown = shown_nowhere;
   for (int i = 0; i < 3; ++i) {
     const vec3 from = mat3(frame.view) * corners[i];
     const vec3 to = mat3(frame.view) * corners[(i + 1) % 3];
-    const bool in_front = -from.z >= near;
-    if (in_front) {
-      const vec2 at = shown_at(from);
-      low = min(low, at);
-      high = max(high, at);
-    }
-    if (in_front != (-to.z >= near)) {
-      vec3 cut = mix(from, to, (near + from.z) / (from.z - to.z));
-      cut.z = -near;
-      const vec2 at = shown_at(cut);
-      // Rounding of the cut, as a slope.
-      const float off = 2e-7 * length(to - from) / (near * pixel_footprint(1.0));
-      low = min(low, at - off);
-      high = max(high, at + off);
-    }
+    include_edge(from, to, near, shown);
   }
-  const float slack = drawn_slack();
-  const vec2 end = vec2(frame.extent);
-  return Pixels(max(ivec2(ceil(clamp(low - slack, vec2(-1.0), end))), ivec2(0)),
-                min(ivec2(floor(clamp(high + slack, vec2(-1.0), end))), ivec2(frame.extent) - 1));
+  return pixels_of(shown);
 }
 
 /// Whether this is a copy: the first leaf that has the triangle draws it.
@@ -101,12 +69,6 @@ void list_later(uint slot, ivec2 first, ivec2 last) {
   part_queue[atomicAdd(parts_queued, 1u)] = DrawnPart(slot, packed(first), packed(last), 0u);
 }
 
-/// In place of what is drawn: by groups of 8 x 8 pixels.
-void trace_all() {
-  trace_groups[0] = (frame.extent.x + 7u) / 8u;
-  trace_groups[1] = (frame.extent.y + 7u) / 8u;
-}
-
 /// By all invocations. `end`: also if there are fewer than invocations.
 void list_queued(bool end) {
   barrier();
@@ -118,7 +80,6 @@ void list_queued(bool end) {
       // Once it is too long it grows no more, so that the count never wraps.
       group_first = part_count > most_parts ? most_parts : atomicAdd(part_count, count - first);
       parts_queued = first;
-      if (group_first + (count - first) > most_parts) trace_all();
     }
     barrier();
     const uint to = group_first + gl_LocalInvocationIndex;

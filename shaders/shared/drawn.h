@@ -17,5 +17,13 @@ struct DrawnPart {
   uint padding0;
 };
 
+// Camera rays are found by tiles of 8 x 8 pixels.
+SHARED_CONSTANT uint tile_pixels = 64u;
+
+// How the rays of a tile find what they meet first.
+SHARED_CONSTANT uint tile_drawn = 0u;
+SHARED_CONSTANT uint tile_drawn_and_traced = 1u;  // the nearer of both
+SHARED_CONSTANT uint tile_traced = 2u;            // without what is drawn
+
 SHARED_END
 #endif

@@ -310,6 +310,7 @@ BvhTopLevel build_top_level(RTCDevice device, const Bvh& bvh,
     node.right = moved_link(node.right, first, 0);
     top.records.push_back(node);
   }
+  top.nodes = {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(tree.nodes.size())};
   top.root = moved_link(tree.root, first, 0);
   // In addition to both trees: the link that leaves the mesh, and the bottom of the stack.
   top.depth = bvh.mesh_depth + tree.depth + 2;
@@ -353,6 +354,7 @@ Bvh build_bvh(RTCDevice device, const scene::Scene& scene, const BvhLayout& layo
   for (const scene::Mesh& mesh : scene.meshes) bounds.push_back(mesh.bounds);
   const BvhTopLevel top = build_top_level(device, bvh, mesh_of, worlds, bounds);
   bvh.records.insert(bvh.records.end(), top.records.begin(), top.records.end());
+  bvh.upper_nodes = top.nodes;
   bvh.root = top.root;
   bvh.depth = top.depth;
   return bvh;

@@ -23,6 +23,12 @@ struct BvhMesh {
   std::size_t triangles = 0;
 };
 
+/// Some of the records, one after the other.
+struct BvhNodes {
+  std::uint32_t first = 0;
+  std::uint32_t count = 0;
+};
+
 /// What of a scene is one tree in world space, where rays need no instances.
 struct BvhLayout {
   bool flat = true;                       // what no clip can move
@@ -46,12 +52,14 @@ struct Bvh {
   std::vector<bool> flat;        // by instance: whether it is in that tree, unless it is hidden
   std::vector<bool> hidden;      // by instance
   std::size_t first_placed = 0;  // index of the first instance record; the rest is the upper level
+  BvhNodes upper_nodes;          // behind the instances
   std::uint32_t mesh_depth = 0;  // maximum over the meshes
 };
 
 /// The upper level: one record per instance that rays can hit, then the nodes.
 struct BvhTopLevel {
   std::vector<shared::BvhNode> records;
+  BvhNodes nodes;
   std::uint32_t root = shared::bvh_no_link;
   std::uint32_t depth = 0;  // of both levels together
 };

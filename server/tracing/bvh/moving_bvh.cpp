@@ -29,6 +29,7 @@ void MovingBvh::place(std::span<const glm::mat4> worlds, const Tables& tables) {
   std::ranges::copy(top.records,
                     tables.records.begin() + static_cast<std::ptrdiff_t>(rest_->first_placed));
   root_ = top.root;
+  upper_nodes_ = top.nodes;
 }
 
 }  // namespace heliograph::tracing

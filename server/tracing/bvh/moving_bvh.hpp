@@ -31,6 +31,7 @@ class MovingBvh {
 
   std::size_t record_count() const { return moving_record_count(*rest_, mesh_of_.size()); }
   std::uint32_t root() const { return root_; }
+  BvhNodes upper_nodes() const { return upper_nodes_; }
 
   /// Fills the tables with the static hierarchy.
   void start(const Tables& tables);
@@ -46,6 +47,7 @@ class MovingBvh {
   std::vector<scene::Bounds> bounds_;   // by mesh
   std::vector<glm::mat4> rest_worlds_;
   std::uint32_t root_ = shared::bvh_no_link;
+  BvhNodes upper_nodes_;
 };
 
 }  // namespace heliograph::tracing

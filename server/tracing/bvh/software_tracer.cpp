@@ -67,6 +67,7 @@ class SoftwareStructure : public virtual AccelerationStructure {
  public:
   virtual SoftwareTables tables() const = 0;
   virtual std::uint32_t root() const = 0;
+  virtual BvhNodes upper_nodes() const = 0;
   virtual WalkedHierarchy::Flat flat_triangles() const = 0;
 };
 
@@ -86,6 +87,7 @@ class StaticSoftwareStructure : public SoftwareStructure {
         triangles_(upload_texels(device, "bvh.triangles", bvh.triangles)),
         alpha_heap_(masks),
         root_(bvh.root),
+        upper_nodes_(bvh.upper_nodes),
         flat_(bvh.is_flat),
         flat_triangles_(flat_triangles_of(bvh)) {
     check_texels(device, masks.name(), masks.size() / sizeof(std::uint32_t));
@@ -94,6 +96,7 @@ class StaticSoftwareStructure : public SoftwareStructure {
 
   SoftwareTables tables() const override { return {records_, triangles_, alpha_heap_}; }
   std::uint32_t root() const override { return root_; }
+  BvhNodes upper_nodes() const override { return upper_nodes_; }
   WalkedHierarchy::Flat flat_triangles() const override { return flat_triangles_; }
   std::uint64_t bytes() const override { return records_.size() + triangles_.size(); }
   /// Whether what no clip moves is one tree.
@@ -106,6 +109,7 @@ class StaticSoftwareStructure : public SoftwareStructure {
   gpu::Buffer triangles_;
   const gpu::Buffer& alpha_heap_;
   std::uint32_t root_;
+  BvhNodes upper_nodes_;
   bool flat_;
   WalkedHierarchy::Flat flat_triangles_;
   std::shared_ptr<const Bvh> bvh_;
@@ -138,6 +142,7 @@ class MovingSoftwareStructure : public SoftwareStructure, public MovingStructure
     return {records_, triangles_ ? triangles_ : rest.triangles, rest.alpha_heap};
   }
   std::uint32_t root() const override { return bvh_.root(); }
+  BvhNodes upper_nodes() const override { return bvh_.upper_nodes(); }
   WalkedHierarchy::Flat flat_triangles() const override { return rest_->flat_triangles(); }
   void update(const Movement& movement) override {
     bvh_.update(movement, mapped());
@@ -236,8 +241,16 @@ class SoftwareTracer : public StoppableTracer {
   static WalkedHierarchy walked_bvh(const AccelerationStructure& structure) {
     const auto& bvh = dynamic_cast<const SoftwareStructure&>(structure);
     const SoftwareTables tables = bvh.tables();
-    return {tables.records, tables.triangles, tables.alpha_heap, [&bvh] { return bvh.root(); },
-            bvh.flat_triangles()};
+    return {.records = tables.records,
+            .triangles = tables.triangles,
+            .alpha_heap = tables.alpha_heap,
+            .root = [&bvh] { return bvh.root(); },
+            .upper_nodes =
+                [&bvh] {
+                  const BvhNodes nodes = bvh.upper_nodes();
+                  return WalkedHierarchy::UpperNodes{nodes.first, nodes.count};
+                },
+            .flat = bvh.flat_triangles()};
   }
 
   static void add_pass(gpu::FramePlan& plan, const std::string& name,

@@ -185,8 +185,9 @@ Line into_mesh(uint record, Line world) {
 
 Hit no_hit(Ray ray) { return Hit(ray.t_max, hit_none, 0u, 0.0, 0.0, 0u, 0u, 0u); }
 
-// `hit`, or what is closer to the ray's origin. `without_flat`: the flat tree is left out.
-Hit trace_beside(Ray ray, uint root, uint stream_blending, bool without_flat, Hit hit) {
+// trace(). `without_flat`: the flat tree is left out.
+Hit trace_beside(Ray ray, uint root, uint stream_blending, bool without_flat) {
+  Hit hit = no_hit(ray);
   if (!(ray.t_min < ray.t_max)) return hit;
   blending = ray_blending(ray, stream_blending);
   const Line world = make_line(ray.origin, ray.direction);
@@ -218,7 +219,7 @@ Hit trace_beside(Ray ray, uint root, uint stream_blending, bool without_flat, Hi
 // The closest hit, or any if ANY_HIT; hit_none where there is none. `root`: of the hierarchy;
 // `stream_blending`: RayCount::blending of the ray's stream.
 Hit trace(Ray ray, uint root, uint stream_blending) {
-  return trace_beside(ray, root, stream_blending, false, no_hit(ray));
+  return trace_beside(ray, root, stream_blending, false);
 }
 
 #endif

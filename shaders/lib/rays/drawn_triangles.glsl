@@ -2,16 +2,15 @@
 // that pixel's ray, and the nearest of all stays. Binding 3 of the pass set is the nearest.
 #ifndef HELIOGRAPH_DRAWN_TRIANGLES_GLSL
 #define HELIOGRAPH_DRAWN_TRIANGLES_GLSL
-#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_EXT_shader_atomic_int64 : require
 #define ANY_HIT false
 #define BVH_BINDING 0
 #include "lib/rays/bvh.glsl"
-#include "lib/rays/gbuffer_ray.glsl"
+#include "lib/rays/drawn_key.glsl"
+#include "lib/rays/shown_pixels.glsl"
 #include "lib/scene/coverage.glsl"
 #include "shared/drawn.h"
 
-// t of the hit in the upper half, whose bits grow with it, the triangle's slot in the lower.
 layout(set = 1, binding = 3, std430) buffer Nearest { uint64_t nearest[]; };
 
 /// gbuffer_ray_index() of the invocation of that pixel.
@@ -19,14 +18,6 @@ uint drawn_index(uvec2 pixel) {
   uint tiles_in_row = (frame.extent.x + 7u) / 8u;
   uint tile = (pixel.y >> 3u) * tiles_in_row + (pixel.x >> 3u);
   return tile * 64u + (pixel.y & 7u) * 8u + (pixel.x & 7u);
-}
-
-/// By how many pixels the rays of a pixel may miss its sample. An orthographic camera's begin at
-/// places in the world, which far from the origin have few digits left.
-float drawn_slack() {
-  if (!enabled(frame_orthographic)) return 0.05;
-  const vec3 far = abs(frame.eye.xyz);
-  return 0.05 + 2e-6 * max(far.x, max(far.y, far.z)) / pixel_footprint(1.0);
 }
 
 /// Relative to the eye: places far from the origin keep their digits.
@@ -38,7 +29,7 @@ vec3[3] corners_from_eye(uint slot) {
 }
 
 // On which side of each edge a pixel lies: at + across x + down y, which is negative outside, but for
-// drawn_slack(), so that rounding takes nothing away. Also of triangles that reach behind the camera
+// shown_slack(), so that rounding takes nothing away. Also of triangles that reach behind the camera
 // (Olano and Greer, Graphics Hardware 1997).
 struct Edges {
   vec3 at;
@@ -73,7 +64,7 @@ Edges edges_of(vec3 corners[3]) {
     edges.at[i] = normal.x * origin.x + normal.y * origin.y + normal.z +
                   1e-6 * length(from) * length(along);
   }
-  edges.at += drawn_slack() * (abs(edges.across) + abs(edges.down));
+  edges.at += shown_slack() * (abs(edges.across) + abs(edges.down));
   return edges;
 }
 
@@ -97,6 +88,10 @@ void draw_pixel(uint slot_and_bit, ivec2 pixel) {
   vec3 tuv;
   uvec3 words;
   if (!triangle_hit(slot, line, vec2(ray.t_min, ray.t_max), tuv, words)) return;
+  const uint64_t key = drawn_key(tuv.x, slot);
+  const uint index = drawn_index(uvec2(pixel));
+  // Reading costs less, and most of what lies behind ends here.
+  if (key >= nearest[index]) return;
   const uvec3 numbers = words & bvh_number_mask;
   blending = 0u;  // blended surfaces stop the ray
   const bool masked = words.z != bvh_no_link;
@@ -106,22 +101,7 @@ void draw_pixel(uint slot_and_bit, ivec2 pixel) {
     set_hit(tuv, words, hit);
     if (is_open(hit, ray.direction, cone_width(camera_cone(), hit.t))) return;
   }
-  const uint64_t key = uint64_t(floatBitsToUint(tuv.x)) << 32 | uint64_t(slot);
-  const uint index = drawn_index(uvec2(pixel));
-  // Reading costs less, and most of what lies behind ends here.
-  if (key < nearest[index]) atomicMin(nearest[index], key);
-}
-
-/// What was drawn nearest at gbuffer_ray_index() `index`, of that pixel's ray.
-Hit drawn_hit(uint index, Ray ray) {
-  Hit hit = no_hit(ray);
-  const uint64_t key = nearest[index];
-  if (key == ~uint64_t(0)) return hit;
-  vec3 tuv;
-  uvec3 words;
-  triangle_hit(uint(key), make_line(ray.origin, ray.direction), vec2(ray.t_min, ray.t_max), tuv, words);
-  set_hit(tuv, words, hit);
-  return hit;
+  atomicMin(nearest[index], key);
 }
 
 #ifdef DRAWING_GROUP

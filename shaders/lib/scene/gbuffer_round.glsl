@@ -4,12 +4,22 @@
 #include "lib/rays/ray_stream.glsl"
 #include "lib/scene/gbuffer_hits.glsl"
 
-layout(set = 1, binding = 2, std430) readonly buffer Hits { Hit hits[]; };
 layout(set = 1, binding = 4, std430) buffer Count { RayCount ray_count; };
 layout(set = 1, binding = 5, std430) writeonly buffer Rays { StoredRay rays[]; };
 
 #ifdef GBUFFER_FIRST
 #include "lib/rays/gbuffer_ray.glsl"
+#ifdef GBUFFER_DRAWN
+#define BVH_BINDING 14
+#define DRAWN_BINDING 17
+#include "lib/rays/drawn_hit.glsl"
+
+Hit met_hit(uint index, Ray ray) { return drawn_hit(index, ray); }
+#else
+layout(set = 1, binding = 2, std430) readonly buffer Hits { Hit hits[]; };
+
+Hit met_hit(uint index, Ray ray) { return hits[index]; }
+#endif
 
 uint met_index() { return gbuffer_ray_index(); }
 bool is_met(uint index) { return true; }
@@ -18,11 +28,13 @@ bool is_last() { return false; }
 #else
 layout(set = 1, binding = 0, std430) readonly buffer MetCount { RayCount met_count; };
 layout(set = 1, binding = 1, std430) readonly buffer MetRays { Ray met_rays[]; };
+layout(set = 1, binding = 2, std430) readonly buffer Hits { Hit hits[]; };
 layout(push_constant) uniform Constants { uint last_round; };
 
 uint met_index() { return ray_index(); }
 bool is_met(uint index) { return index < met_count.count; }
 Ray met_ray(uint index) { return met_rays[index]; }
+Hit met_hit(uint index, Ray ray) { return hits[index]; }
 bool is_last() { return last_round != 0u; }
 #endif
 
@@ -32,7 +44,7 @@ void main() {
   Ray ray;
   if (is_met(index)) {
     ray = met_ray(index);
-    Hit hit = hits[index];
+    Hit hit = met_hit(index, ray);
     ivec2 pixel = pixel_of(ray);
     if (hit.instance == hit_none) {
       if (!outside_frame(pixel)) store_nothing(pixel);

@@ -16,6 +16,8 @@
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
 #include "render/passes/rays/ray_stream.hpp"
 #include "scene/import.hpp"
+#include "shaders/shared/drawn.h"
+#include "tests/gpu/embedded.hpp"
 #include "tests/gpu/support/kernel_comparison.hpp"
 #include "tests/gpu/support/textured_scene.hpp"
 
@@ -23,6 +25,14 @@ namespace heliograph::test {
 namespace {
 
 constexpr std::uint32_t many_parts = 1u << 14;
+
+/// tests/gpu/gbuffer/drawn_hits.comp
+template <class Stage>
+struct DrawnHitsBindings {
+  render::WalkedBuffers<Stage> hierarchy;
+  render::DrawnHits<Stage> found;
+  gpu::WriteBuffer<Stage, shared::Hit> hits;
+};
 
 /// What the camera rays of one view hit: traced and drawn.
 class TracedAndDrawn {
@@ -45,7 +55,14 @@ class TracedAndDrawn {
     in.tracer.trace_closest(plan, "stream.trace", in.structure, stream, traced_);
     const auto hierarchy = in.tracer.walked(in.structure);
     flat_ = hierarchy.value().flat;
-    render::draw_camera_rays(plan, in, *hierarchy, drawn_, most_parts);
+    const auto buffers = render::walked_buffers(plan, *hierarchy);
+    const gpu::BufferRef beside = plan.buffer("beside", sizeof(shared::Hit) * rays_,
+                                              render::formats::storage, gpu::Memory::device);
+    const render::DrawnHits<gpu::Declared> found =
+        render::draw_camera_rays(plan, in, *hierarchy, buffers, beside, most_parts);
+    plan.pass("drawn", in.program(test::shaders::drawn_hits))
+        .bind<DrawnHitsBindings>({.hierarchy = buffers, .found = found, .hits = drawn_})
+        .dispatch(gpu::each_pixel());
   }
 
   FrameRig& rig() { return rig_; }
@@ -77,6 +94,31 @@ class TracedAndDrawn {
     // Where two triangles meet.
     EXPECT_LE(static_cast<double>(other_triangles), 0.01 * static_cast<double>(met)) << which;
     return static_cast<double>(met) / static_cast<double>(traced.size());
+  }
+
+  /// In how many tiles rays were traced beside what is drawn, or in place of it.
+  std::size_t traced_tiles() {
+    std::size_t count = 0;
+    const std::vector<shared::Hit> drawn = hits(drawn_);
+    for (std::size_t i = 0; i < drawn.size(); i += shared::tile_pixels) {
+      count += drawn[i].padding0 != shared::tile_drawn;
+    }
+    return count;
+  }
+  std::size_t tiles() const { return rays_ / shared::tile_pixels; }
+
+  /// Pixels that show instances of this mesh.
+  std::size_t shown(const scene::Scene& scene, std::uint32_t mesh) {
+    const std::vector<shared::Hit> drawn = hits(drawn_);
+    return static_cast<std::size_t>(std::ranges::count_if(drawn, [&](const shared::Hit& hit) {
+      return hit.instance != shared::hit_none && scene.instances[hit.instance].mesh == mesh;
+    }));
+  }
+
+  /// Part of the frame alone, as dynamic resolution does.
+  void draw_smaller(VkExtent2D drawn, const scene::Camera& camera) {
+    rig_.draw_smaller(drawn, camera);
+    rays_ = render::camera_ray_capacity(drawn.width, {0, static_cast<int>(drawn.height)});
   }
 
  private:
@@ -198,12 +240,87 @@ TEST_F(DrawCameraRays, WorksAtAnySize) {
   }
 }
 
-TEST_F(DrawCameraRays, TracesFramesWithTooManyParts) {
-  const auto scene = room();
-  for (const std::uint32_t most_parts : {0u, 1u, 5u}) {
-    TracedAndDrawn both(scene, look({0, 0, 0}, {0.3f, -0.2f, -1}, 70.0f), {200, 140}, most_parts);
-    both.expect_equal(std::to_string(most_parts) + " parts");
+/// The room with `count` more spheres inside and outside of it, which a clip moves.
+std::shared_ptr<const scene::Scene> room_of_moving_spheres(int count) {
+  SceneBuilder builder;
+  const auto wall = builder.add_quad({{{-4, -4, -4}, {4, -4, -4}, {4, 4, -4}, {-4, 4, -4}}},
+                                     surface({0.5f, 0.5f, 0.5f}));
+  builder.place(wall);
+  builder.place(builder.add_sphere(1.0f, surface({0.2f, 0.8f, 0.3f})),
+                glm::translate(glm::mat4(1.0f), {-1.5f, 0.5f, -2.5f}));
+  const auto ball = builder.add_sphere(0.15f, surface({0.9f, 0.3f, 0.3f}));
+  for (int i = 0; i < count; ++i) {
+    const float turn = 2.4f * static_cast<float>(i);
+    const float far = 0.5f + 6.0f * static_cast<float>(i) / static_cast<float>(count);
+    builder.place(
+        ball, glm::translate(glm::mat4(1.0f), {far * std::sin(turn), 0.4f * std::cos(1.7f * turn),
+                                               far * std::cos(turn)}));
   }
+  auto scene = std::make_shared<scene::Scene>(*double_sided(*builder.build()));
+  scene::Clip& clip = scene->clips.emplace_back();
+  for (const scene::Instance& instance : scene->instances) {
+    if (instance.mesh == ball) clip.channels.push_back({.node = instance.node});
+  }
+  return scene;
+}
+
+// Their boxes are in front of the camera and behind it, and around it.
+TEST_F(DrawCameraRays, TracesTilesThatMayShowWhatMoves) {
+  std::size_t traced_tiles = 0;
+  for (const int count : {1, 5, 150}) {
+    const auto scene = room_of_moving_spheres(count);
+    for (const bool orthographic : {false, true}) {
+      for (const float turn : {0.0f, 1.0f, 2.6f}) {
+        scene::Camera camera = look({0, 0, 0}, {std::sin(turn), -0.1f, -std::cos(turn)}, 60.0f);
+        if (orthographic) camera.orthographic_height = 3.0f;
+        TracedAndDrawn both(scene, camera, {301, 203});
+        EXPECT_FALSE(both.flat().all);
+        both.expect_equal(std::to_string(count) + " spheres, turned by " + std::to_string(turn) +
+                          (orthographic ? ", orthographic" : ""));
+        EXPECT_LT(both.traced_tiles(), both.tiles() * (count < 100 ? 1 : 2) / 2);
+        traced_tiles += both.traced_tiles();
+        if (count == 150) {
+          EXPECT_GT(both.shown(*scene, scene->instances.back().mesh), 0u);
+        }
+      }
+    }
+  }
+  EXPECT_GT(traced_tiles, 0u);
+}
+
+TEST_F(DrawCameraRays, FindsTilesOfSmallerFrames) {
+  const auto scene = room_of_moving_spheres(40);
+  const scene::Camera camera = look({0, 0, 0}, {0.2f, -0.1f, -1}, 60.0f);
+  TracedAndDrawn both(scene, camera, {301, 203});
+  both.draw_smaller({199, 135}, camera);
+  both.expect_equal("two thirds");
+  EXPECT_GT(both.shown(*scene, scene->instances.back().mesh), 0u);
+  EXPECT_LT(both.traced_tiles(), both.tiles());
+}
+
+TEST_F(DrawCameraRays, TracesAllTilesWhereManyInstancesMove) {
+  TracedAndDrawn both(room_of_moving_spheres(1100), look({0, 0, 0}, {0.2f, -0.1f, -1}, 60.0f),
+                      {90, 70});
+  both.expect_equal("1100 spheres");
+  EXPECT_EQ(both.traced_tiles(), both.tiles());
+}
+
+TEST_F(DrawCameraRays, TracesFramesWithTooManyParts) {
+  for (const auto& [name, scene] :
+       {std::pair("still", room()), std::pair("moving", room_of_moving_spheres(20))}) {
+    for (const std::uint32_t most_parts : {0u, 1u, 5u}) {
+      TracedAndDrawn both(scene, look({0, 0, 0}, {0.3f, -0.2f, -1}, 70.0f), {200, 140}, most_parts);
+      both.expect_equal(std::string(name) + ", " + std::to_string(most_parts) + " parts");
+      EXPECT_EQ(both.traced_tiles(), both.tiles());
+    }
+  }
+}
+
+// Nothing but what is drawn.
+TEST_F(DrawCameraRays, TracesNoTilesOfWhatDoesNotMove) {
+  TracedAndDrawn both(room(), look({0, 0, 0}, {0.3f, -0.2f, -1}, 70.0f), {200, 140});
+  both.expect_equal("room");
+  EXPECT_EQ(both.traced_tiles(), 0u);
 }
 
 TEST_F(DrawCameraRays, TracesInstancesThatMove) {

@@ -71,7 +71,7 @@ class RoundsAndWalk {
   /// Whether camera rays were drawn.
   bool draws() const {
     return std::ranges::any_of(rig_.plan().timings(), [](const gpu::PassTiming& timing) {
-      return timing.name == "gbuffer.drawn";
+      return timing.name == "gbuffer.beside";
     });
   }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -125,6 +126,38 @@ TEST_F(BvhTest, ContainsEveryTriangleOnceWithinItsBoxes) {
   EXPECT_EQ(placed.size(), scene.instances.size());
   EXPECT_TRUE(bvh.masked);
   EXPECT_LE(bvh.depth, shared::bvh_stack_size);
+}
+
+/// Instances beside the links of the upper level's nodes, in order of their numbers.
+std::vector<std::uint32_t> instances_of_nodes(const Bvh& bvh) {
+  std::vector<std::uint32_t> found;
+  const auto [first, count] = bvh.upper_nodes;
+  for (std::uint32_t i = first; i < first + count; ++i) {
+    for (const std::uint32_t link : {bvh.records.at(i).left, bvh.records.at(i).right}) {
+      if (!is_leaf(link)) continue;
+      const auto record =
+          std::bit_cast<shared::BvhInstance>(bvh.records.at(link & shared::bvh_leaf_first_mask));
+      found.push_back(record.instance & shared::bvh_number_mask);
+    }
+  }
+  std::ranges::sort(found);
+  return found;
+}
+
+// gbuffer_tiles.comp reads their boxes there.
+TEST_F(BvhTest, UpperNodesHaveEveryInstanceOnce) {
+  scene::Scene scene = two_level_scene(1);
+  for (const bool all : {true, false}) {
+    if (!all) scene.nodes.at(scene.instances.at(2).node).world = glm::mat4(0.0f);
+    const Bvh bvh = build(scene);
+    std::vector<std::uint32_t> expected;
+    for (const shared::BvhInstance& record : instances_below(bvh, bvh.root)) {
+      expected.push_back(record.instance & shared::bvh_number_mask);
+    }
+    std::ranges::sort(expected);
+    EXPECT_EQ(expected.size(), scene.instances.size() - (all ? 0 : 1));
+    EXPECT_EQ(instances_of_nodes(bvh), expected);
+  }
 }
 
 float half_area(const Box& box) {

@@ -2,7 +2,7 @@
 
 #include "render/passes/formats.hpp"
 #include "render/passes/gbuffer/trace_gbuffer.hpp"
-#include "render/passes/gbuffer/walked_buffers.hpp"
+#include "shaders/embedded.hpp"
 #include "shaders/shared/drawn.h"
 
 namespace heliograph::render {
@@ -16,15 +16,24 @@ constexpr std::uint32_t least_triangles = 100;
 constexpr std::uint32_t most_triangles = 65535 * 64;
 /// Enough to fill a large device several times; each draws one part after the other.
 constexpr std::uint32_t groups_of_parts = 8192;
-/// Bytes in front of the first part: how many there are, and groups that trace in its place.
-constexpr VkDeviceSize list_header = 16;
-constexpr VkDeviceSize trace_groups_offset = 4;
+/// Each traces one tile after the other.
+constexpr std::uint32_t groups_of_tiles = 4096;
+constexpr VkDeviceSize count_size = sizeof(std::uint32_t);  // in front of a list
 
 /// shaders/gbuffer/gbuffer_clear.comp
 template <class Stage>
 struct GBufferClearBindings {
   gpu::WriteBuffer<Stage, std::uint64_t> nearest;
-  gpu::WriteBuffer<Stage, shared::DrawnPart> parts;
+  gpu::WriteBuffer<Stage, std::uint32_t> parts;
+  gpu::WriteBuffer<Stage, std::uint32_t> tiles;
+};
+
+/// shaders/gbuffer/gbuffer_tiles.comp
+template <class Stage>
+struct GBufferTilesBindings {
+  gpu::ReadBuffer<Stage, glm::vec4> records;
+  gpu::ReadWriteBuffer<Stage, std::uint32_t> tiles;
+  gpu::WriteBuffer<Stage, std::uint32_t> found_by;
 };
 
 /// shaders/gbuffer/gbuffer_small.comp and gbuffer_large.comp: what they have in common.
@@ -49,46 +58,99 @@ struct GBufferLargeBindings {
   gpu::ReadBuffer<Stage, shared::DrawnPart> parts;
 };
 
-/// shaders/gbuffer/gbuffer_drawn.comp and gbuffer_drawn_beside.comp
+/// shaders/gbuffer/gbuffer_beside.comp
 template <class Stage>
-struct GBufferDrawnBindings {
-  DrawnTriangles<Stage> drawn;
-  gpu::WriteBuffer<Stage, shared::Hit> hits;
+struct GBufferBesideBindings {
+  WalkedBuffers<Stage> hierarchy;
+  gpu::ReadBuffer<Stage, shared::DrawnPart> parts;
+  gpu::ReadBuffer<Stage, std::uint32_t> tiles;
+  gpu::WriteBuffer<Stage, shared::Hit> traced;
+  gpu::WriteBuffer<Stage, std::uint32_t> found_by;
+};
+struct GBufferBesideConstants {
+  std::uint32_t root;
+  std::uint32_t most_parts;
 };
 
-}  // namespace
+/// What the passes share.
+struct Drawing {
+  WalkedBuffers<gpu::Declared> hierarchy;
+  gpu::BufferRef nearest;
+  gpu::BufferRef parts;  // their number, then shared::DrawnPart each
+  gpu::BufferRef tiles;  // likewise, numbers of tiles
+  gpu::BufferRef traced;
+  gpu::BufferRef found_by;
+  std::uint32_t most_parts;
 
-void draw_camera_rays(gpu::FramePlan& plan, const FrameInputs& in,
-                      const tracing::WalkedHierarchy& hierarchy, gpu::BufferRef hits,
-                      std::uint32_t most_parts) {
+  DrawnTriangles<gpu::Declared> drawn() const { return {hierarchy, nearest}; }
+};
+
+Drawing declare_drawing(gpu::FramePlan& plan, const WalkedBuffers<gpu::Declared>& hierarchy,
+                        gpu::BufferRef traced, std::uint32_t most_parts) {
   const VkExtent2D extent = plan.extent();
   const std::uint32_t rays =
       camera_ray_capacity(extent.width, {0, static_cast<int>(extent.height)});
-  const gpu::BufferRef nearest = plan.buffer("gbuffer.nearest", sizeof(std::uint64_t) * rays,
-                                             formats::storage, gpu::Memory::device);
-  const DrawnTriangles<gpu::Declared> drawn{.hierarchy = walked_buffers(plan, hierarchy),
-                                            .nearest = nearest};
-  const gpu::BufferRef parts =
-      plan.buffer("gbuffer.parts", list_header + sizeof(shared::DrawnPart) * most_parts,
-                  formats::storage | VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT, gpu::Memory::device);
-  plan.pass("gbuffer.clear", in.program(shaders::gbuffer_clear))
-      .bind<GBufferClearBindings>({.nearest = nearest, .parts = parts})
-      .dispatch(gpu::each_pixel().reduced(2));
+  const auto buffer = [&](const char* name, VkDeviceSize size) {
+    return plan.buffer(name, size, formats::storage, gpu::Memory::device);
+  };
+  const VkDeviceSize tiles = rays / shared::tile_pixels;
+  return {.hierarchy = hierarchy,
+          .nearest = buffer("gbuffer.nearest", sizeof(std::uint64_t) * rays),
+          .parts = buffer("gbuffer.parts", count_size + sizeof(shared::DrawnPart) * most_parts),
+          .tiles = buffer("gbuffer.tiles", count_size + sizeof(std::uint32_t) * tiles),
+          .traced = traced,
+          .found_by = buffer("gbuffer.found_by", sizeof(std::uint32_t) * tiles),
+          .most_parts = most_parts};
+}
+
+/// Triangles of the flat tree.
+void draw_triangles(gpu::FramePlan& plan, const FrameInputs& in, const Drawing& drawing,
+                    const tracing::WalkedHierarchy::Flat& flat) {
   plan.pass("gbuffer.small", in.program(shaders::gbuffer_small))
-      .bind<GBufferSmallBindings>({.drawn = drawn, .parts = parts})
-      .constants(GBufferSmallConstants{hierarchy.flat.first, hierarchy.flat.count, most_parts})
-      .dispatch({hierarchy.flat.count, 1});
+      .bind<GBufferSmallBindings>({.drawn = drawing.drawn(), .parts = drawing.parts})
+      .constants(GBufferSmallConstants{flat.first, flat.count, drawing.most_parts})
+      .dispatch({flat.count, 1});
   plan.pass("gbuffer.large", in.program(shaders::gbuffer_large))
-      .bind<GBufferLargeBindings>({.drawn = drawn, .parts = parts})
-      .constants(most_parts)
+      .bind<GBufferLargeBindings>({.drawn = drawing.drawn(), .parts = drawing.parts})
+      .constants(drawing.most_parts)
       .dispatch({groups_of_parts * 32, 1});
-  const bool all = hierarchy.flat.all;
-  gpu::PassBuilder pass = plan.pass(
-      "gbuffer.drawn", in.program(all ? shaders::gbuffer_drawn : shaders::gbuffer_drawn_beside));
-  pass.bind<GBufferDrawnBindings>({.drawn = drawn, .hits = hits}).dispatch(gpu::each_pixel());
-  if (!all) pass.constants(hierarchy.root);
-  trace_camera_rays(plan, in, hierarchy, drawn.hierarchy, hits)
-      .dispatch_indirect(parts, trace_groups_offset);
+}
+
+/// The rest of the scene.
+void trace_beside(gpu::FramePlan& plan, const FrameInputs& in, const Drawing& drawing,
+                  const tracing::WalkedHierarchy& hierarchy) {
+  plan.pass("gbuffer.tiles", in.program(shaders::gbuffer_tiles))
+      .bind<GBufferTilesBindings>({.records = drawing.hierarchy.records,
+                                   .tiles = drawing.tiles,
+                                   .found_by = drawing.found_by})
+      .constants(hierarchy.upper_nodes)
+      .dispatch(gpu::each_pixel().reduced(8));
+  plan.pass("gbuffer.beside", in.program(shaders::gbuffer_beside))
+      .bind<GBufferBesideBindings>({.hierarchy = drawing.hierarchy,
+                                    .parts = drawing.parts,
+                                    .tiles = drawing.tiles,
+                                    .traced = drawing.traced,
+                                    .found_by = drawing.found_by})
+      .constants([root = hierarchy.root, most_parts = drawing.most_parts] {
+        return GBufferBesideConstants{root(), most_parts};
+      })
+      .dispatch({groups_of_tiles * shared::tile_pixels, 1});
+}
+
+}  // namespace
+
+DrawnHits<gpu::Declared> draw_camera_rays(gpu::FramePlan& plan, const FrameInputs& in,
+                                          const tracing::WalkedHierarchy& hierarchy,
+                                          const WalkedBuffers<gpu::Declared>& buffers,
+                                          gpu::BufferRef traced, std::uint32_t most_parts) {
+  const Drawing drawing = declare_drawing(plan, buffers, traced, most_parts);
+  plan.pass("gbuffer.clear", in.program(shaders::gbuffer_clear))
+      .bind<GBufferClearBindings>(
+          {.nearest = drawing.nearest, .parts = drawing.parts, .tiles = drawing.tiles})
+      .dispatch(gpu::each_pixel().reduced(2));
+  draw_triangles(plan, in, drawing, hierarchy.flat);
+  trace_beside(plan, in, drawing, hierarchy);
+  return {.traced = drawing.traced, .nearest = drawing.nearest, .found_by = drawing.found_by};
 }
 
 std::uint32_t most_drawn_parts(VkExtent2D extent) {

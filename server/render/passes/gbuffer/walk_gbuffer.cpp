@@ -38,13 +38,34 @@ struct StoredSurfaces {
   gpu::OptionalWrite<Stage> layers;
 };
 
+/// Bindings 3 to 13 of shaders/lib/scene/gbuffer_round.glsl.
+template <class Stage>
+struct FoundSurfaces {
+  gpu::ReadBuffer<Stage, shared::Vertex> previous_vertices;
+  kernels::RaySink<Stage> passed;
+  StoredSurfaces<Stage> surfaces;
+};
+
 /// shaders/gbuffer/gbuffer_first.comp, or gbuffer_first_layered.comp, which writes `layers`.
 template <class Stage>
 struct GBufferFirstBindings {
   gpu::ReadBuffer<Stage, shared::Hit> hits;
-  gpu::ReadBuffer<Stage, shared::Vertex> previous_vertices;
-  kernels::RaySink<Stage> passed;
-  StoredSurfaces<Stage> surfaces;
+  FoundSurfaces<Stage> found;
+};
+
+/// shaders/gbuffer/gbuffer_first_drawn.comp, or gbuffer_first_drawn_layered.comp, likewise.
+template <class Stage>
+struct GBufferFirstDrawnBindings {
+  FoundSurfaces<Stage> found;
+  WalkedBuffers<Stage> hierarchy;
+  DrawnHits<Stage> hits;
+};
+
+/// shaders/gbuffer/gbuffer_trace.comp
+template <class Stage>
+struct GBufferTraceBindings {
+  WalkedBuffers<Stage> hierarchy;
+  gpu::WriteBuffer<Stage, shared::Hit> hits;
 };
 
 /// shaders/gbuffer/gbuffer_passed.comp, or gbuffer_passed_layered.comp, which writes `layers`.
@@ -86,14 +107,27 @@ Walk declare_walk(gpu::FramePlan& plan, const FrameInputs& in,
           .passed = declare_rays(plan, "gbuffer.passed", capacity, tracing::RayKind::camera)};
 }
 
-void store_first(gpu::FramePlan& plan, const FrameInputs& in, const Walk& walk,
-                 const GBuffer& gbuffer) {
+FoundSurfaces<gpu::Declared> found_surfaces(const Walk& walk, const GBuffer& gbuffer) {
+  return {.previous_vertices = walk.previous_vertices,
+          .passed = ray_sink(walk.passed),
+          .surfaces = stored_surfaces(gbuffer, walk.layered)};
+}
+
+void store_traced(gpu::FramePlan& plan, const FrameInputs& in, const Walk& walk,
+                  const GBuffer& gbuffer) {
   const auto& shader = walk.layered ? shaders::gbuffer_first_layered : shaders::gbuffer_first;
   plan.pass("gbuffer.hits", in.program(shader, walk.features))
-      .bind<GBufferFirstBindings>({.hits = walk.hits,
-                                   .previous_vertices = walk.previous_vertices,
-                                   .passed = ray_sink(walk.passed),
-                                   .surfaces = stored_surfaces(gbuffer, walk.layered)})
+      .bind<GBufferFirstBindings>({.hits = walk.hits, .found = found_surfaces(walk, gbuffer)})
+      .dispatch(gpu::each_pixel());
+}
+
+void store_drawn(gpu::FramePlan& plan, const FrameInputs& in, const Walk& walk,
+                 const GBuffer& gbuffer, const DrawnHits<gpu::Declared>& hits) {
+  const auto& shader =
+      walk.layered ? shaders::gbuffer_first_drawn_layered : shaders::gbuffer_first_drawn;
+  plan.pass("gbuffer.hits", in.program(shader, walk.features))
+      .bind<GBufferFirstDrawnBindings>(
+          {.found = found_surfaces(walk, gbuffer), .hierarchy = walk.hierarchy, .hits = hits})
       .dispatch(gpu::each_pixel());
 }
 
@@ -118,14 +152,19 @@ GBuffer walk_gbuffer(gpu::FramePlan& plan, const FrameInputs& in,
                      const tracing::WalkedHierarchy& hierarchy) {
   const GBuffer gbuffer = declare_gbuffer(plan, in.moving.features_without_emission());
   const Walk walk = declare_walk(plan, in, hierarchy);
-  if (draws_camera_rays(plan, in, hierarchy)) {
-    draw_camera_rays(plan, in, hierarchy, walk.hits, most_drawn_parts(plan.extent()));
-  } else {
-    trace_camera_rays(plan, in, hierarchy, walk.hierarchy, walk.hits).dispatch(gpu::each_pixel());
-  }
   // Camera rays decide for themselves, by the filtered texel: as drawn triangles do.
   begin_rays(plan, in, "gbuffer", walk.passed, Blending::stops);
-  store_first(plan, in, walk, gbuffer);
+  if (draws_camera_rays(plan, in, hierarchy)) {
+    const DrawnHits<gpu::Declared> hits = draw_camera_rays(
+        plan, in, hierarchy, walk.hierarchy, walk.hits, most_drawn_parts(plan.extent()));
+    store_drawn(plan, in, walk, gbuffer, hits);
+  } else {
+    plan.pass("gbuffer.trace", in.program(shaders::gbuffer_trace))
+        .bind<GBufferTraceBindings>({.hierarchy = walk.hierarchy, .hits = walk.hits})
+        .constants(hierarchy.root)
+        .dispatch(gpu::each_pixel());
+    store_traced(plan, in, walk, gbuffer);
+  }
   find_passed(plan, in, walk, hierarchy, gbuffer);
   return gbuffer;
 }

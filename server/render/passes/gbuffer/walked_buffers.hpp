@@ -1,8 +1,9 @@
 #pragma once
 
-#include "render/passes/frame_inputs.hpp"
-#include "shaders/embedded.hpp"
-#include "shaders/shared/ray.h"
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "gpu/frame_plan/frame_plan.hpp"
 #include "tracing/ray_tracer.hpp"
 
 namespace heliograph::render {
@@ -21,23 +22,6 @@ inline WalkedBuffers<gpu::Declared> walked_buffers(gpu::FramePlan& plan,
   return {.records = plan.import(hierarchy.records),
           .triangles = plan.import(hierarchy.triangles),
           .alpha_heap = plan.import(hierarchy.alpha_heap)};
-}
-
-/// shaders/gbuffer/gbuffer_trace.comp
-template <class Stage>
-struct GBufferTraceBindings {
-  WalkedBuffers<Stage> hierarchy;
-  gpu::WriteBuffer<Stage, shared::Hit> hits;
-};
-
-/// The pass that traces the camera rays of all pixels, without its dispatch: groups of 8 x 8.
-inline gpu::PassBuilder trace_camera_rays(gpu::FramePlan& plan, const FrameInputs& in,
-                                          const tracing::WalkedHierarchy& hierarchy,
-                                          const WalkedBuffers<gpu::Declared>& buffers,
-                                          gpu::BufferRef hits) {
-  return plan.pass("gbuffer.trace", in.program(shaders::gbuffer_trace))
-      .bind<GBufferTraceBindings>({.hierarchy = buffers, .hits = hits})
-      .constants(hierarchy.root);
 }
 
 }  // namespace heliograph::render
