@@ -44,7 +44,14 @@ constexpr std::size_t packet = 16;  // the most that Embree takes
 /// A packet of rays; those that are not valid are not traced.
 struct Lanes {
   alignas(64) std::array<int, packet> valid{};
-  alignas(64) RTCRayHit16 rays;
+  alignas(64) RTCRayHit16 rays{};
+
+  /// No ray is valid. Where packets of Embree have fewer lanes it goes by the intervals alone.
+  void clear() {
+    valid.fill(0);
+    std::fill_n(rays.ray.tnear, packet, dead_from);
+    std::fill_n(rays.ray.tfar, packet, dead_to);
+  }
 
   void set(std::size_t lane, const shared::Ray& from, std::uint32_t blending,
            const Interval& interval) {
@@ -109,7 +116,7 @@ void intersect_packets(const EmbreeTarget& target, const RayBatch& batch, shared
   const auto& hit = lanes.rays.hit;
   for (std::size_t first = 0; first < batch.rays.size(); first += packet) {
     const auto some = batch.rays.subspan(first, std::min(packet, batch.rays.size() - first));
-    lanes.valid.fill(0);
+    lanes.clear();
     for (std::size_t i = 0; i < some.size(); ++i) {
       lanes.set(i, some[i], batch.blending,
                 interval_between(some[i].t_min, hits[first + i].t, target.robust));
@@ -130,7 +137,7 @@ void occluded_packets(const EmbreeTarget& target, const RayBatch& batch, std::ui
   Lanes lanes;
   std::array<std::size_t, packet> asked;
   for (std::size_t next = 0; next < batch.rays.size();) {
-    lanes.valid.fill(0);
+    lanes.clear();
     std::size_t used = 0;
     for (; used < packet && next < batch.rays.size(); ++next) {
       if (occluded[next]) continue;
