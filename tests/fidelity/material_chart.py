@@ -171,14 +171,14 @@ def parse(arguments=None):
     parser.add_argument("--small", action="store_true",
                         help="other defaults, and the bars of a small chart: a minute or two")
     parser.add_argument("--size", type=int, help="width and height of a ball's square [96; 32]")
-    parser.add_argument("--samples", type=int, help="of the hybrid, per pixel [64; 32]")
+    parser.add_argument("--samples", type=int, help="of the hybrid, per pixel [64]")
     parser.add_argument("--reference-samples", type=int,
                         help="of the path tracer, per pixel [1024; 256]")
     parser.add_argument("--scene", type=Path, help="a scene with such rows, not the generated one")
     parser.add_argument("--print-bars", action="store_true",
                         help="print what was measured as bars for material_bars.py")
     options = parser.parse_args(arguments)
-    defaults = (32, 32, 256) if options.small else (96, 64, 1024)
+    defaults = (32, 64, 256) if options.small else (96, 64, 1024)
     for name, value in zip(("size", "samples", "reference_samples"), defaults):
         if getattr(options, name) is None:
             setattr(options, name, value)
