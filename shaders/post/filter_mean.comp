@@ -11,7 +11,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/lighting/lights.glsl"
 #include "shared/exposure.h"
 
-layout(set = 1, binding = 0, rgba32f) readonly uniform image2D radiance;
+layout(set = 1, binding = 0) uniform sampler2D radiance;
 layout(set = 1, binding = 1, rgba32f) readonly uniform image2D accumulated;  // a: variance
 layout(set = 1, binding = 2, std140) uniform ExposureBlock { ExposureState exposure; };
 layout(set = 1, binding = 3, rgba16f) writeonly uniform image2D filtered;
@@ -44,7 +44,7 @@ float unit_of(vec3 seen, vec3 mean) {
 
 /// Of `at`, counted from the corner of the surroundings.
 void prepare(ivec2 at, ivec2 pixel) {
-  vec3 seen = imageLoad(radiance, pixel).rgb;
+  vec3 seen = texelFetch(radiance, pixel, 0).rgb;
   vec4 mean = imageLoad(accumulated, pixel);
   float unit = unit_of(seen, mean.rgb);
   vec4 difference = vec4((mean.rgb - seen) * unit, mean.a * variance_scale * unit * unit);
@@ -112,7 +112,7 @@ void main() {
   if (noise_scale == 0.0) {
     if (!inside) return;
     vec4 mean = imageLoad(accumulated, pixel);
-    keep(pixel, imageLoad(radiance, pixel).rgb, mean.rgb, mean.a * variance_scale);
+    keep(pixel, texelFetch(radiance, pixel, 0).rgb, mean.rgb, mean.a * variance_scale);
     return;
   }
   ivec2 wide_corner = ivec2(gl_WorkGroupID.xy) * 8 - reach - surroundings;
@@ -138,7 +138,7 @@ void main() {
       squares += weight * weight;
     }
   }
-  vec3 seen = imageLoad(radiance, pixel).rgb;
+  vec3 seen = texelFetch(radiance, pixel, 0).rgb;
   vec4 mean = imageLoad(accumulated, pixel);
   float unit = unit_of(seen, mean.rgb);
   float share = squares / (weights * weights);

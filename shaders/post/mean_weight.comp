@@ -8,7 +8,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/lighting/lights.glsl"
 #include "shared/exposure.h"
 
-layout(set = 1, binding = 0, rgba32f) readonly uniform image2D radiance;
+layout(set = 1, binding = 0) uniform sampler2D radiance;
 layout(set = 1, binding = 1, rgba16f) readonly uniform image2D filtered;  // a: deviation
 layout(set = 1, binding = 2, std140) uniform ExposureBlock { ExposureState exposure; };
 layout(set = 1, binding = 3, r32f) writeonly uniform image2D mean_weight;
@@ -24,7 +24,7 @@ shared float weights[weights_side * weights_side];
 
 /// Both in units of the exposed image, in which bright pixels differ less.
 vec2 compared(ivec2 pixel) {
-  float seen = luminance(imageLoad(radiance, pixel).rgb);
+  float seen = luminance(texelFetch(radiance, pixel, 0).rgb);
   vec4 mean = imageLoad(filtered, pixel);
   float averaged = luminance(mean.rgb);
   float compression = 1.0 / (1.0 + 0.5 * exposure.factor * (seen + averaged));

@@ -8,7 +8,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/math/tone_map.glsl"
 #include "shared/exposure.h"
 
-layout(set = 1, binding = 0, rgba32f) readonly uniform image2D radiance;
+layout(set = 1, binding = 0) uniform sampler2D radiance;
 layout(set = 1, binding = 1, rgba16f) readonly uniform image2D mean;
 layout(set = 1, binding = 2, r32f) readonly uniform image2D mean_weight;  // of `mean`
 layout(set = 1, binding = 3, std140) uniform ExposureBlock { ExposureState exposure; };
@@ -33,7 +33,7 @@ void main() {
   if (any(greaterThanEqual(uvec2(pixel), shown_size))) return;
   ivec2 nearest = ivec2((2u * uvec2(pixel) + 1u) * drawn / (2u * shown_size));
   float weight = uniform_weight < 0.0 ? imageLoad(mean_weight, pixel).r : uniform_weight;
-  vec3 color = weight < 1.0 ? imageLoad(radiance, nearest).rgb : vec3(0.0);
+  vec3 color = weight < 1.0 ? texelFetch(radiance, nearest, 0).rgb : vec3(0.0);
   if (weight > 0.0) color = mix(color, imageLoad(mean, pixel).rgb, weight);
   color = max(color, 0.0) * exposure.factor;
   vec3 encoded = srgb_encode(tone_map(color));

@@ -1,4 +1,4 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#define FILTERED_IN_FLOATS
+#define FILTERED_IS_RESULT
 #include "lib/denoise/atrous_half_pair.glsl"

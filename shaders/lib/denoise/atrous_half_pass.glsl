@@ -35,8 +35,11 @@ Value weighed_texel(Value texel, Channels weight) {
 }
 
 void store(ivec2 texel, Value value) {
+#if !defined(FILTERED_IN_FLOATS) && !defined(FILTERED_IS_RESULT)
+  value = with_variance(value, sqrt(max(variance_of(value), Channels(0.0))));
+#endif
 #ifndef FILTERED_IN_FLOATS
-  value = nearest_halves(with_variance(value, sqrt(max(variance_of(value), Channels(0.0)))));
+  value = nearest_halves(value);
 #endif
   save(texel, value);
 }

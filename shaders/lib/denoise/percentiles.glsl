@@ -6,7 +6,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(set = 1, binding = 0, rgba32f) readonly uniform image2D guide;
-layout(set = 1, binding = 1, rgba32f) readonly uniform image2D raw;
+layout(set = 1, binding = 1) uniform sampler2D raw;
 layout(set = 1, binding = 2, rgba32f) writeonly uniform image2D percentiles;  // low, high; of either
 
 shared vec2 values[64];
@@ -23,7 +23,7 @@ void main() {
   bool valid = !outside_frame(pixel) && !guide_is_background(imageLoad(guide, pixel));
   vec2 value = vec2(nothing);
   if (valid) {
-    vec4 texel = imageLoad(raw, pixel);
+    vec4 texel = texelFetch(raw, pixel, 0);
     bool bad = any(isnan(texel)) || any(isinf(texel));
     value = bad ? vec2(0.0) : brightness(texel);
   }

@@ -169,10 +169,12 @@ inline render::AtrousConfig filter_config(const FrameRig& rig, const shared::Atr
   const render::AtrousHalfPrograms halves =
       specular ? render::AtrousHalfPrograms{program(shaders::specular_atrous_half_first),
                                             program(shaders::specular_atrous_half),
-                                            program(shaders::specular_atrous_half_last)}
+                                            program(shaders::specular_atrous_half_last),
+                                            program(shaders::specular_atrous_half_result)}
                : render::AtrousHalfPrograms{program(shaders::visibility_atrous_half_first),
                                             program(shaders::visibility_atrous_half),
-                                            program(shaders::visibility_atrous_half_last)};
+                                            program(shaders::visibility_atrous_half_last),
+                                            program(shaders::visibility_atrous_half_result)};
   return {.name = specular ? "specular.atrous" : "visibility.atrous",
           .buffers = specular ? render::specular_atrous_buffers : render::visibility_atrous_buffers,
           .program = program(specular ? shaders::specular_atrous : shaders::visibility_atrous),

@@ -38,7 +38,8 @@ std::string half_name(const std::string& blur, int level, bool first) {
 class Blur {
  public:
   Blur(gpu::FramePlan& plan, const FrameInputs& in, const AtrousInput& input,
-       const AtrousConfig& config, const std::optional<Feedback>& feedback)
+       const AtrousConfig& config, const std::optional<Feedback>& feedback,
+       VkFormat result_format = four_floats)
       : plan_(plan),
         in_(in),
         input_(input),
@@ -47,7 +48,8 @@ class Blur {
         size_(gpu::FrameSize::squares(config.pixels_per_texel)),
         side_(static_cast<int>(config.pixels_per_texel)),
         last_(config.iterations - 1),
-        result_(image(config.buffers.denoised, four_floats)) {}
+        result_in_floats_(result_format == four_floats),
+        result_(image(config.buffers.denoised, result_format)) {}
 
   /// Both halves of the kernel at once.
   gpu::ImageRef whole() {
@@ -93,7 +95,7 @@ class Blur {
   HalfImages half_images() {
     HalfImages made{image(config_.buffers.half, four_halves), std::nullopt, result_};
     for (int level = 0; level <= last_ && !made.between; ++level) {
-      if (!to_floats(level)) made.between = image(config_.buffers.even, four_halves);
+      if (!is_result(level)) made.between = image(config_.buffers.even, four_halves);
     }
     return made;
   }
@@ -104,11 +106,11 @@ class Blur {
     gpu::ImageRef signal = input_.signal;
     bool in_floats = true;
     for (int level = 0; level <= last_; ++level) {
-      const gpu::ImageRef to = to_floats(level) ? result_ : *images.between;
+      const gpu::ImageRef to = is_result(level) ? result_ : *images.between;
       half_pass(level, true, in_floats ? programs.first : programs.between, signal, images.half);
-      half_pass(level, false, to_floats(level) ? programs.last : programs.between, images.half, to);
+      half_pass(level, false, second_program(level), images.half, to);
       signal = to;
-      in_floats = to_floats(level);
+      in_floats = is_result(level);
       feed_back(level, signal);
     }
     return signal;
@@ -120,8 +122,13 @@ class Blur {
   }
   std::string name(int level) const { return config_.name + "." + std::to_string(level); }
   bool feeds_back(int level) const { return feedback_ && feedback_->level == level; }
-  /// What is fed back holds 32 bits, as the result does.
-  bool to_floats(int level) const { return level == last_ || feeds_back(level); }
+  /// What is fed back is written as the result is.
+  bool is_result(int level) const { return level == last_ || feeds_back(level); }
+  const gpu::ProgramSource& second_program(int level) const {
+    const AtrousHalfPrograms& programs = config_.half_programs;
+    if (!is_result(level)) return programs.between;
+    return result_in_floats_ ? programs.last : programs.last_in_halves;
+  }
   void feed_back(int level, gpu::ImageRef filtered) const {
     if (feeds_back(level)) feedback_->keep(filtered);
   }
@@ -150,6 +157,7 @@ class Blur {
   gpu::FrameSize size_;
   int side_;
   int last_;
+  bool result_in_floats_;
   gpu::ImageRef result_;
 };
 
@@ -166,9 +174,9 @@ class PairedHalves {
       : plan_(plan), in_(in), visibility_(visibility), specular_(specular) {}
 
   void declare(const HalfImages& visibility, const HalfImages& specular) {
-    const AtrousHalfPrograms programs{in_.program(shaders::visibility_specular_atrous_first),
-                                      in_.program(shaders::visibility_specular_atrous),
-                                      in_.program(shaders::visibility_specular_atrous_last)};
+    const gpu::ProgramSource first = in_.program(shaders::visibility_specular_atrous_first);
+    const gpu::ProgramSource between = in_.program(shaders::visibility_specular_atrous);
+    const gpu::ProgramSource to_result = in_.program(shaders::visibility_specular_atrous_last);
     const PairImages half{visibility.half, specular.half};
     PairImages signal{visibility_.input.signal, specular_.input.signal};
     const int last = visibility_.config.iterations - 1;
@@ -176,8 +184,8 @@ class PairedHalves {
       const PairImages to = level == last
                                 ? PairImages{visibility.result, specular.result}
                                 : PairImages{visibility.between.value(), specular.between.value()};
-      half_pass(level, true, level == 0 ? programs.first : programs.between, signal, half);
-      half_pass(level, false, level == last ? programs.last : programs.between, half, to);
+      half_pass(level, true, level == 0 ? first : between, signal, half);
+      half_pass(level, false, level == last ? to_result : between, half, to);
       signal = to;
     }
   }
@@ -230,7 +238,8 @@ AtrousConfig radiance_atrous_config(
       buffers,
       in.program(shaders::specular_atrous),
       {in.program(shaders::specular_atrous_half_first), in.program(shaders::specular_atrous_half),
-       in.program(shaders::specular_atrous_half_last)},
+       in.program(shaders::specular_atrous_half_last),
+       in.program(shaders::specular_atrous_half_result)},
       kernels::specular_atrous,
       kernels::specular_atrous_halves,
       iterations,
@@ -251,16 +260,16 @@ bool can_blur_together(const gpu::FramePlan& plan, const protocol::BlurSettings&
     return settings.enabled && settings.kernel == protocol::BlurKernel::separable &&
            !feeds_back(settings);
   };
-  return !plan.uses_host_kernels() && !plan.device().is_cpu() && by_plain_halves(a) &&
-         by_plain_halves(b) && a.iterations == b.iterations;
+  return formats::in_halves(plan) && by_plain_halves(a) && by_plain_halves(b) &&
+         a.iterations == b.iterations;
 }
 
 BlurredPair blur_together(gpu::FramePlan& plan, const FrameInputs& in, const SignalBlur& visibility,
                           const SignalBlur& specular,
                           const std::function<bool()>& traces_visibility) {
   const std::optional<Feedback> none;
-  Blur visibility_alone(plan, in, visibility.input, visibility.config, none);
-  Blur specular_alone(plan, in, specular.input, specular.config, none);
+  Blur visibility_alone(plan, in, visibility.input, visibility.config, none, four_halves);
+  Blur specular_alone(plan, in, specular.input, specular.config, none, four_halves);
   const HalfImages visibility_images = visibility_alone.half_images();
   const HalfImages specular_images = specular_alone.half_images();
   const auto together = [traces_visibility, a = visibility.config.constants,

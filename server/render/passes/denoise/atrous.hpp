@@ -23,7 +23,8 @@ inline constexpr std::array specular_denoised_aspects{
            "variance."}};
 
 /// Between the passes of a separable blur by shaders 16 bits a channel, with standard deviations in
-/// place of variances; otherwise, and what is denoised, 32 bits.
+/// place of variances; otherwise, and what is denoised, 32 bits. What blur_together() has denoised
+/// holds 16 bits, with variances.
 struct AtrousBuffers {
   BufferDescription even, odd;  // between iterations
   BufferDescription half;       // between the halves of a separable iteration, in shaders
@@ -87,6 +88,7 @@ struct AtrousHalfPrograms {
   gpu::ProgramSource first;  // from the signal
   gpu::ProgramSource between;
   gpu::ProgramSource last;  // to the result
+  gpu::ProgramSource last_in_halves;
 };
 
 /// A blur of one signal: how often, and what its passes read every frame.

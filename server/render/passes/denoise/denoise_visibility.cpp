@@ -44,7 +44,8 @@ AtrousConfig visibility_atrous_config(const FrameInputs& in, const AtrousBuffers
           in.program(shaders::visibility_atrous),
           {in.program(shaders::visibility_atrous_half_first),
            in.program(shaders::visibility_atrous_half),
-           in.program(shaders::visibility_atrous_half_last)},
+           in.program(shaders::visibility_atrous_half_last),
+           in.program(shaders::visibility_atrous_half_result)},
           kernels::visibility_atrous,
           kernels::visibility_atrous_halves,
           settings.iterations,
@@ -105,9 +106,11 @@ gpu::ImageRef blur_at_half_size(gpu::FramePlan& plan, const FrameInputs& in,
 
 gpu::ImageRef combine_visibility(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef shadows,
                                  gpu::ImageRef ambient) {
-  const auto noisy =
-      plan.image(denoise_visibility_buffers.noisy.name, VK_FORMAT_R32G32B32A32_SFLOAT);
-  plan.pass("visibility.combine", in.program(shaders::visibility_combine))
+  const bool halves = formats::in_halves(plan);
+  const auto noisy = plan.image(denoise_visibility_buffers.noisy.name,
+                                halves ? formats::two_halves : formats::four_floats);
+  plan.pass("visibility.combine",
+            in.program(halves ? shaders::visibility_combine_half : shaders::visibility_combine))
       .bind<kernels::CombineBindings>({.shadows = shadows, .ambient = ambient, .visibility = noisy})
       .dispatch(gpu::each_pixel())
       .host(kernels::visibility_combine);

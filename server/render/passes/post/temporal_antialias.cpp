@@ -1,6 +1,7 @@
 #include "render/passes/post/temporal_antialias.hpp"
 
 #include "render/kernels/post/temporal_antialias.hpp"
+#include "render/passes/formats.hpp"
 #include "render/passes/frame_inputs.hpp"
 #include "render/passes/reference/reference.hpp"
 #include "shaders/embedded.hpp"
@@ -11,9 +12,12 @@ gpu::ImageRef temporal_antialias(gpu::FramePlan& plan, const FrameInputs& in,
                                  const GBuffer& gbuffer, const Exposure& exposure,
                                  gpu::ImageRef radiance) {
   if (!in.settings.antialiasing.temporal) return radiance;
-  const auto history = plan.history(temporal_antialias_buffers.resolved.name,
-                                    VK_FORMAT_R32G32B32A32_SFLOAT, 0, in.shown);
-  plan.pass("temporal_antialias", in.program(shaders::temporal_antialias))
+  const bool halves = formats::in_halves(plan);
+  const auto history =
+      plan.history(temporal_antialias_buffers.resolved.name,
+                   halves ? formats::four_halves : formats::four_floats, 0, in.shown);
+  plan.pass("temporal_antialias",
+            in.program(halves ? shaders::temporal_antialias_half : shaders::temporal_antialias))
       .bind<kernels::AntialiasBindings>({.radiance = radiance,
                                          .motion = gbuffer.motion,
                                          .history = history.previous,
@@ -21,8 +25,12 @@ gpu::ImageRef temporal_antialias(gpu::FramePlan& plan, const FrameInputs& in,
                                          .resolved = history.current})
       .constants([in] {
         const protocol::Settings::Antialiasing& s = in.settings.antialiasing;
-        return kernels::AntialiasConstants{size_of(in.shown), s.blend, s.clip,
-                                           s.anti_flicker ? 1.0f : 0.0f, traces_reference(in)};
+        return kernels::AntialiasConstants{size_of(in.shown),
+                                           s.blend,
+                                           s.clip,
+                                           s.anti_flicker ? 1.0f : 0.0f,
+                                           traces_reference(in),
+                                           in.clock.samples > 0};
       })
       .dispatch(in.shown)
       .host(kernels::temporal_antialias, in.constants);
