@@ -76,7 +76,7 @@ MISTAKES = (
             "expected.view_z = moved.w + moved.z;", "expected.view_z = moved.w;",
             "image_tests", "History.IsValidWhileCameraApproaches"),
     Mistake("9", "antialiasing reads beyond the edge of the image",
-            "shaders/lib/post/temporal_antialias.glsl",
+            "shaders/post/temporal_antialias.comp",
             "frame.history_invalid == 0u && all(greaterThanEqual(before, vec2(0.0))) &&\n"
             "               all(lessThanEqual(before, vec2(1.0)));",
             "frame.history_invalid == 0u;",

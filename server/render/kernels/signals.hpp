@@ -6,7 +6,7 @@
 /// Kernels that copy or average signals: bound by memory, plain loops on all processors.
 namespace heliograph::render::kernels {
 
-/// Shadow and ambient visibility side by side: shaders/lib/denoise/visibility_combine.glsl.
+/// Shadow and ambient visibility side by side: shaders/denoise/visibility_combine.comp.
 template <class Stage>
 struct CombineBindings {
   gpu::Read<Stage> shadows, ambient;  // r32f
@@ -28,7 +28,7 @@ struct AccumulateConstants {
 using AccumulateJob = gpu::HostPass<AccumulateBindings, AccumulateConstants>;
 void accumulate(const AccumulateJob& job);
 
-/// The filtered mean blended into the frame that is kept: shaders/lib/post/hold_mean.glsl.
+/// The filtered mean blended into the frame that is kept: shaders/post/hold_mean.comp.
 template <class Stage>
 struct HoldMeanBindings {
   gpu::Read<Stage> mean;           // rgba16f

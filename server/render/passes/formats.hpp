@@ -13,10 +13,10 @@ inline constexpr VkFormat two_halves = VK_FORMAT_R16G16_SFLOAT;
 inline constexpr VkFormat four_fractions = VK_FORMAT_R16G16B16A16_UNORM;
 inline constexpr VkBufferUsageFlags storage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
 
-/// Whether images that need no more have 16 bits a channel: on GPUs, where reading texels takes as
-/// long as they have bytes. Kernels of the host read and write 32 bits.
+/// Whether images that need no more have 16 bits a channel: those of shaders, which take as long to
+/// read texels as these have bytes. Kernels of the host read and write 32 bits.
 inline bool in_halves(const gpu::FramePlan& plan) {
-  return !plan.uses_host_kernels() && !plan.device().is_cpu();
+  return !plan.uses_host_kernels();
 }
 
 }  // namespace heliograph::render::formats

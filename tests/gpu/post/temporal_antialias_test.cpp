@@ -75,12 +75,12 @@ TEST_F(TemporalAntialiasTest, StaticImageIsUnchanged) {
   }
 }
 
-// A published implementation lacks the off-screen test and smears here.
-/// The sample alone, but for rounding to the 16 bits that GPUs keep.
+/// The sample alone, but for rounding to the 16 bits that shaders keep.
 bool is_sample(const glm::vec4& resolved, const glm::vec4& sample) {
   return glm::all(glm::lessThanEqual(glm::abs(resolved - sample), glm::abs(sample) / 1024.0f));
 }
 
+// A published implementation lacks the off-screen test and smears here.
 TEST_F(TemporalAntialiasTest, ColumnsEnteringTheFrameHaveNoHistory) {
   const auto shade = [](int frame_number) {
     return [frame_number](float x, float y) {

@@ -127,7 +127,7 @@ class Video(ServerTestCase):
 
     @needs_video
     async def test_new_viewers_do_not_force_key_frames_at_once(self, viewer):
-        # So slowly that no viewer, newcomers either, loses a frame on a busy machine.
+        # So slowly that viewers, newcomers too, lose few frames on a busy machine.
         async with viewer.moving(rate=15):
             received = []
             while sum(frame.header["codec"] == H264 for frame in received) < 3:

@@ -16,7 +16,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace heliograph::render::kernels::HWY_NAMESPACE {
 
-// As in temporal_antialias.glsl.
+// As in temporal_antialias.comp.
 constexpr float min_anti_flicker = 0.2f;
 constexpr float edge_depth = 0.05f;
 constexpr float cubic_slope = -0.75f;

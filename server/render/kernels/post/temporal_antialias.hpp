@@ -5,7 +5,7 @@
 
 namespace heliograph::render::kernels {
 
-/// shaders/lib/post/temporal_antialias.glsl
+/// shaders/post/temporal_antialias.comp
 template <class Stage>
 struct AntialiasBindings {
   gpu::Read<Stage> radiance, motion;  // rgba32f, of the size that is drawn
@@ -14,12 +14,12 @@ struct AntialiasBindings {
   gpu::Write<Stage> resolved;  // rgba32f; a: samples in the mean
 };
 struct AntialiasConstants {
-  glm::uvec2 shown;         // size of the history and the result, pixels
-  float blend;              // least weight of the new frame
-  float clip;               // half width of the box in standard deviations
-  float anti_flicker;       // 1: on
-  std::uint32_t hold;       // 1: the history is the result, as in a static view that is path traced
-  std::uint32_t is_static;  // 1: so is the view
+  glm::uvec2 shown;    // size of the history and the result, pixels
+  float blend;         // least weight of the new frame
+  float clip;          // half width of the box in standard deviations
+  float anti_flicker;  // 1: on
+  std::uint32_t hold;  // 1: the history is the result, as in a static view that is path traced
+  std::uint32_t has_settled;  // 1: nothing has moved in so many frames that it hardly changes
 };
 using AntialiasJob = FrameJob<AntialiasBindings, AntialiasConstants>;
 

@@ -21,11 +21,12 @@ struct NoisySignals {
   std::optional<gpu::ImageRef> indirect;  // rgba32f; without it the environment shines around
 };
 
-/// The same without noise; a signal that is not denoised stands here as it is.
+/// The same without noise, in 32 or 16 bits a channel; a signal that is not denoised stands here as
+/// it is.
 struct DenoisedSignals {
-  gpu::ImageRef visibility;               // rgba32f: shadow x, ambient y
-  std::optional<gpu::ImageRef> specular;  // rgba32f
-  std::optional<gpu::ImageRef> indirect;  // rgba32f
+  gpu::ImageRef visibility;               // shadow x, ambient y
+  std::optional<gpu::ImageRef> specular;  // rgb
+  std::optional<gpu::ImageRef> indirect;  // rgb
 };
 
 /// Linear radiance.

@@ -260,8 +260,8 @@ bool can_blur_together(const gpu::FramePlan& plan, const protocol::BlurSettings&
     return settings.enabled && settings.kernel == protocol::BlurKernel::separable &&
            !feeds_back(settings);
   };
-  return formats::in_halves(plan) && by_plain_halves(a) && by_plain_halves(b) &&
-         a.iterations == b.iterations;
+  return !plan.uses_host_kernels() && !plan.device().is_cpu() && by_plain_halves(a) &&
+         by_plain_halves(b) && a.iterations == b.iterations;
 }
 
 BlurredPair blur_together(gpu::FramePlan& plan, const FrameInputs& in, const SignalBlur& visibility,

@@ -109,8 +109,7 @@ gpu::ImageRef combine_visibility(gpu::FramePlan& plan, const FrameInputs& in, gp
   const bool halves = formats::in_halves(plan);
   const auto noisy = plan.image(denoise_visibility_buffers.noisy.name,
                                 halves ? formats::two_halves : formats::four_floats);
-  plan.pass("visibility.combine",
-            in.program(halves ? shaders::visibility_combine_half : shaders::visibility_combine))
+  plan.pass("visibility.combine", in.program(shaders::visibility_combine))
       .bind<kernels::CombineBindings>({.shadows = shadows, .ambient = ambient, .visibility = noisy})
       .dispatch(gpu::each_pixel())
       .host(kernels::visibility_combine);

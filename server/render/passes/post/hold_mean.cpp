@@ -1,7 +1,6 @@
 #include "render/passes/post/hold_mean.hpp"
 
 #include "render/kernels/signals.hpp"
-#include "render/passes/formats.hpp"
 #include "render/passes/frame_inputs.hpp"
 #include "render/passes/post/mean_weight.hpp"
 #include "render/passes/reference/reference.hpp"
@@ -12,8 +11,7 @@ namespace heliograph::render {
 void hold_mean(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef resolved,
                gpu::ImageRef mean, gpu::ImageRef mean_weight) {
   if (!in.settings.antialiasing.temporal) return;
-  plan.pass("hold_mean",
-            in.program(formats::in_halves(plan) ? shaders::hold_mean_half : shaders::hold_mean))
+  plan.pass("hold_mean", in.program(shaders::hold_mean))
       .bind<kernels::HoldMeanBindings>(
           {.mean = mean, .mean_weight = mean_weight, .resolved = resolved})
       .constants([in] {
