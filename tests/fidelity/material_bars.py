@@ -3,8 +3,7 @@
 Of the balls of a row, the worst counts. WHOLE is for the chart of `material_chart.py` with its
 defaults: what is aimed at. SMALL is for that with --small: what --print-bars printed on a processor,
 which is what was measured, less MARGIN for noise and other devices: by so much the worst ball of a
-row differed between two processors at 32 samples. A row that is missing here
-counts as missed.
+row differed between two processors at 32 samples. A row that is missing here counts as missed.
 """
 
 import math

@@ -11,6 +11,8 @@ namespace {
 
 /// Whether a static view's frame has forgotten what was before but for a fiftieth: after four times
 /// as many frames as count in it, where that is read at texels (`most_still` of the shader).
+/// Earlier its mean would come to rest; StaticView.ChangesLessWhereNoiseDecides pins, on a GPU,
+/// that it ends.
 bool has_settled(const FrameInputs& in) {
   constexpr float frames = 4.0f * 4.0f;
   return static_cast<float>(in.clock.samples) >
