@@ -59,6 +59,18 @@ bool loss_is_wanted() {
   return file && std::remove(file) == 0;
 }
 
+bool has_subgroup_ballots(VkPhysicalDevice device) {
+  VkPhysicalDeviceVulkan11Properties subgroups{
+      VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_1_PROPERTIES};
+  VkPhysicalDeviceProperties2 properties{VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_PROPERTIES_2,
+                                         &subgroups};
+  vkGetPhysicalDeviceProperties2(device, &properties);
+  constexpr VkSubgroupFeatureFlags needed =
+      VK_SUBGROUP_FEATURE_BASIC_BIT | VK_SUBGROUP_FEATURE_VOTE_BIT | VK_SUBGROUP_FEATURE_BALLOT_BIT;
+  return (subgroups.subgroupSupportedOperations & needed) == needed &&
+         (subgroups.subgroupSupportedStages & VK_SHADER_STAGE_COMPUTE_BIT) != 0;
+}
+
 }  // namespace
 
 Device::Device(const Instance& instance, const DeviceOptions& options) {
@@ -125,6 +137,7 @@ void Device::create(const Instance& instance) {
   atomics_64_ = supported.shaderInt64 && supported_12.shaderBufferInt64Atomics;
   features.features.shaderInt64 = atomics_64_;
   v12.shaderBufferInt64Atomics = atomics_64_;
+  subgroup_ballots_ = has_subgroup_ballots(report_.handle);
   features.features.robustBufferAccess = instance.validation() ? supported.robustBufferAccess : 0;
 
   VkDeviceCreateInfo info{VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO, &features};

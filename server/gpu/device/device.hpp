@@ -49,6 +49,9 @@ class Device {
   /// Shaders have 64-bit integers, and atomic operations on those of buffers.
   bool atomics_64() const { return atomics_64_; }
 
+  /// Compute shaders can ask which invocations of a subgroup satisfy a condition.
+  bool subgroup_ballots() const { return subgroup_ballots_; }
+
   /// Index of a memory type among `allowed` with `needed`, preferring one that has `preferred` too.
   std::uint32_t memory_type(std::uint32_t allowed, VkMemoryPropertyFlags needed,
                             VkMemoryPropertyFlags preferred) const;
@@ -93,6 +96,7 @@ class Device {
   bool labels_ = false;
   bool samples_bc7_ = false;
   bool atomics_64_ = false;
+  bool subgroup_ballots_ = false;
   mutable ProgramRegistry programs_;
 };
 

@@ -176,13 +176,20 @@ class MovingSoftwareStructure : public SoftwareStructure, public MovingStructure
   std::optional<DeviceRefit> refit_;  // of scenes with deforming meshes
 };
 
+/// Whether the lanes of a subgroup walk the hierarchy together. That pays off where many more of
+/// them run than a processor has.
+bool traces_together(const gpu::Device& device) {
+  return !device.is_cpu() && device.subgroup_ballots();
+}
+
 class SoftwareTracer : public StoppableTracer {
  public:
   explicit SoftwareTracer(const gpu::Device& device)
       : device_(device),
         embree_(make_embree_device()),
-        closest_(device, shaders::trace_closest),
-        any_(device, shaders::trace_any),
+        closest_(device, traces_together(device) ? shaders::trace_closest_together
+                                                 : shaders::trace_closest),
+        any_(device, traces_together(device) ? shaders::trace_any_together : shaders::trace_any),
         refit_(device) {}
 
   protocol::TracerKind kind() const override { return protocol::TracerKind::software; }

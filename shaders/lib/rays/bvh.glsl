@@ -119,29 +119,30 @@ void push(uint link) { stack[waiting++] = link; }
 
 uint pop() { return stack[--waiting]; }
 
+// From a node to the next link on the line's way within the range.
+uint next_link(uint node, Line line, vec2 range) {
+  const int texel = int((node & bvh_number_mask) * bvh_texels_per_record);
+  const vec4 left_xy = texelFetch(records, texel);
+  const vec4 right_xy = texelFetch(records, texel + 1);
+  const vec4 both_z = texelFetch(records, texel + 2);
+  const uvec2 children = floatBitsToUint(texelFetch(records, texel + 3).xy);
+  const vec2 left = box_interval(left_xy.xy, left_xy.zw, both_z.xy, line, range);
+  const vec2 right = box_interval(right_xy.xy, right_xy.zw, both_z.zw, line, range);
+  const bool enter_left = left.x <= left.y;
+  const bool enter_right = right.x <= right.y;
+  // Sorting pays only where a near hit spares the far child.
+  const bool right_first = !ANY_HIT && right.x < left.x;
+  if (enter_left && enter_right) {
+    push(right_first ? children.x : children.y);
+    return right_first ? children.y : children.x;
+  }
+  if (enter_left || enter_right) return enter_left ? children.x : children.y;
+  return pop();
+}
+
 // Follows the line down to the next leaf that it may meet within the range, or to bvh_no_link.
 uint descend(uint link, Line line, vec2 range) {
-  while (is_node(link)) {
-    const int texel = int((link & bvh_number_mask) * bvh_texels_per_record);
-    const vec4 left_xy = texelFetch(records, texel);
-    const vec4 right_xy = texelFetch(records, texel + 1);
-    const vec4 both_z = texelFetch(records, texel + 2);
-    const uvec2 children = floatBitsToUint(texelFetch(records, texel + 3).xy);
-    const vec2 left = box_interval(left_xy.xy, left_xy.zw, both_z.xy, line, range);
-    const vec2 right = box_interval(right_xy.xy, right_xy.zw, both_z.zw, line, range);
-    const bool enter_left = left.x <= left.y;
-    const bool enter_right = right.x <= right.y;
-    // Sorting pays only where a near hit spares the far child.
-    const bool right_first = !ANY_HIT && right.x < left.x;
-    if (enter_left && enter_right) {
-      push(right_first ? children.x : children.y);
-      link = right_first ? children.y : children.x;
-    } else if (enter_left || enter_right) {
-      link = enter_left ? children.x : children.y;
-    } else {
-      link = pop();
-    }
-  }
+  while (is_node(link)) link = next_link(link, line, range);
   return link;
 }
 
