@@ -120,6 +120,13 @@ std::uint32_t Queues::idlest_compute() const {
   return idlest;
 }
 
+bool Queues::is_crowded() const {
+  const auto working = std::count_if(queues_.begin() + 1, queues_.end(),
+                                     [&](const auto& queue) { return waiting_before(*queue) > 0; });
+  // A session alone has two frames on the device.
+  return working > 2 && 2 * static_cast<std::size_t>(working) > compute_count();
+}
+
 Submission Queues::submit(VkCommandBuffer commands, std::uint32_t number,
                           const std::optional<Submission>& after) const {
   Queue& queue = *queues_.at(number);

@@ -279,6 +279,8 @@ class FramePlan {
   void record(const Pass& pass, VkCommandBuffer commands, std::uint32_t query);
   void record_raster(const Pass& pass, VkCommandBuffer commands);
   void bind(const Pass& pass, VkCommandBuffer commands);
+  /// What runs in this frame.
+  const Program& program_of(const Pass& pass) const;
   void bind_shared_sets(const Pass& pass, VkCommandBuffer commands);
   /// Whether every pass is a submit of its own, timed from outside: drivers for processors write
   /// timestamps while they record, as soon as anything was ever drawn.
@@ -324,6 +326,7 @@ class FramePlan {
   std::uint32_t queue_ = Queues::general;  // of the frames that have begun
   VkCommandPool command_pool_ = VK_NULL_HANDLE;
   std::vector<VkCommandBuffer> commands_;  // one for each submit of a frame, slot by slot
+  bool in_a_crowd_ = false;                // the frame that has begun last, when it began
   std::size_t submits_ = 0;                // of this frame so far
   bool recording_ = false;                 // into the next
   std::optional<Submission> submitted_;    // what was last submitted and not waited for

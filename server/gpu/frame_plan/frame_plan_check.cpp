@@ -62,6 +62,15 @@ std::string mismatch(const ShaderBinding& binding, const Image* image, const std
   return {};
 }
 
+bool take_the_same(const Program& a, const Program& b) {
+  const auto same = [](const ShaderBinding& x, const ShaderBinding& y) {
+    return x.binding == y.binding && x.type == y.type && x.count == y.count && x.reads == y.reads &&
+           x.writes == y.writes && x.format == y.format;
+  };
+  return std::ranges::equal(a.pass_bindings(), b.pass_bindings(), same) &&
+         a.constants_size() == b.constants_size();
+}
+
 }  // namespace
 
 std::vector<Use> FramePlan::Pass::all_uses() const {
@@ -107,6 +116,9 @@ void FramePlan::check_pass(const Pass& pass) const {
   if (pass.constants_size != pass.program->constants_size()) {
     fail("the shader takes " + std::to_string(pass.program->constants_size()) +
          " bytes of constants, given " + std::to_string(pass.constants_size));
+  }
+  if (pass.in_a_crowd && !take_the_same(*pass.program, *pass.in_a_crowd)) {
+    fail("the shader that runs in a crowd takes other bindings or constants");
   }
   const bool dispatched = pass.threads.of(extent_).width > 0 || pass.indirect;
   if (!pass.is_raster && !dispatched) fail("it is never dispatched");

@@ -44,6 +44,7 @@ bool FramePlan::begin(const std::function<bool()>& canceled) {
   }
   device_.check_presence();
   choose_timing();
+  in_a_crowd_ = device_.queues().is_crowded();
   submits_ = 0;
   recording_ = false;
   canceled_ = false;
@@ -291,10 +292,15 @@ void FramePlan::record(const Pass& pass, VkCommandBuffer commands, std::uint32_t
   if (device_.labels()) vkCmdEndDebugUtilsLabelEXT(commands);
 }
 
+const Program& FramePlan::program_of(const Pass& pass) const {
+  return in_a_crowd_ && pass.in_a_crowd ? *pass.in_a_crowd : *pass.program;
+}
+
 void FramePlan::bind(const Pass& pass, VkCommandBuffer commands) {
   const VkPipelineBindPoint point = pass.bind_point();
-  const VkPipelineLayout layout = pass.program->layout();
-  vkCmdBindPipeline(commands, point, pass.program->pipeline());
+  const Program& program = program_of(pass);
+  const VkPipelineLayout layout = program.layout();
+  vkCmdBindPipeline(commands, point, program.pipeline());
   bind_shared_sets(pass, commands);
   if (pass.sets[parity_]) {
     vkCmdBindDescriptorSets(commands, point, layout, pass_set, 1, &pass.sets[parity_], 0, nullptr);
@@ -302,19 +308,20 @@ void FramePlan::bind(const Pass& pass, VkCommandBuffer commands) {
   if (pass.constants) {
     std::array<std::byte, most_constants> bytes;
     pass.constants(bytes.data());
-    vkCmdPushConstants(commands, layout, pass.program->stages(), 0,
+    vkCmdPushConstants(commands, layout, program.stages(), 0,
                        static_cast<std::uint32_t>(pass.constants_size), bytes.data());
   }
 }
 
 void FramePlan::bind_shared_sets(const Pass& pass, VkCommandBuffer commands) {
+  const Program& program = program_of(pass);
   for (const SharedSet& shared : shared_sets_) {
-    if (!pass.program->uses_set(shared.number)) continue;
+    if (!program.uses_set(shared.number)) continue;
     const bool replaced = std::ranges::any_of(shared_sets_, [&](const SharedSet& other) {
       return other.number == shared.number && other.side == pass.side;
     });
     if (replaced ? shared.side != pass.side : shared.side != 1) continue;
-    vkCmdBindDescriptorSets(commands, pass.bind_point(), pass.program->layout(), shared.number, 1,
+    vkCmdBindDescriptorSets(commands, pass.bind_point(), program.layout(), shared.number, 1,
                             &shared.sets[parity_], 0, nullptr);
   }
 }

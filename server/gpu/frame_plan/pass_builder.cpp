@@ -83,4 +83,9 @@ PassBuilder& PassBuilder::when(std::function<bool()> condition) {
   return *this;
 }
 
+PassBuilder& PassBuilder::in_a_crowd(const ComputeProgram& program) {
+  plan_.passes_[pass_].in_a_crowd = &program;
+  return *this;
+}
+
 }  // namespace heliograph::gpu

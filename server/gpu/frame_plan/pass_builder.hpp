@@ -18,6 +18,7 @@ namespace heliograph::gpu {
 inline constexpr std::size_t most_bindings = 24;
 inline constexpr std::size_t most_constants = 128;
 
+class ComputeProgram;
 class FramePlan;
 
 /// One pass under construction. Its resources bind, in the order given, to the shader's pass set in
@@ -67,6 +68,10 @@ class PassBuilder {
   PassBuilder& draw(std::function<void(VkCommandBuffer, VkPipelineLayout)> record);
   /// The pass is skipped in frames where this is false.
   PassBuilder& when(std::function<bool()> condition);
+
+  /// In frames that begin while the device works on many others (Queues::is_crowded()), `program`
+  /// runs instead: the same computation, with the same bindings, constants and workgroups.
+  PassBuilder& in_a_crowd(const ComputeProgram& program);
 
   /// The same computation as the shader's by the host's processors, which a plan with host kernels
   /// runs in its place. `kernel` is a function or a lambda that takes a `const HostPass<...>&` of

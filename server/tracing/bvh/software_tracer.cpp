@@ -176,20 +176,34 @@ class MovingSoftwareStructure : public SoftwareStructure, public MovingStructure
   std::optional<DeviceRefit> refit_;  // of scenes with deforming meshes
 };
 
-/// Whether the lanes of a subgroup walk the hierarchy together. That pays off where many more of
-/// them run than a processor has.
-bool traces_together(const gpu::Device& device) {
-  return !device.is_cpu() && device.subgroup_ballots();
-}
+/// Where lanes of a subgroup walk the hierarchy together, long rays end sooner: on a device with
+/// more lanes than rays keep busy. Where the device works on many frames its lanes are busy, and it
+/// gets more done with a ray for each.
+class TracingProgram {
+ public:
+  TracingProgram(const gpu::Device& device, const gpu::ShaderBinary& apart,
+                 const gpu::ShaderBinary& together)
+      : apart_(device, apart) {
+    if (!device.is_cpu() && device.subgroup_ballots()) together_.emplace(device, together);
+  }
+
+  gpu::PassBuilder pass(gpu::FramePlan& plan, const std::string& name) const {
+    if (!together_) return plan.pass(name, apart_);
+    return plan.pass(name, *together_).in_a_crowd(apart_);
+  }
+
+ private:
+  gpu::ComputeProgram apart_;
+  std::optional<gpu::ComputeProgram> together_;
+};
 
 class SoftwareTracer : public StoppableTracer {
  public:
   explicit SoftwareTracer(const gpu::Device& device)
       : device_(device),
         embree_(make_embree_device()),
-        closest_(device, traces_together(device) ? shaders::trace_closest_together
-                                                 : shaders::trace_closest),
-        any_(device, traces_together(device) ? shaders::trace_any_together : shaders::trace_any),
+        closest_(device, shaders::trace_closest, shaders::trace_closest_together),
+        any_(device, shaders::trace_any, shaders::trace_any_together),
         refit_(device) {}
 
   protocol::TracerKind kind() const override { return protocol::TracerKind::software; }
@@ -260,11 +274,11 @@ class SoftwareTracer : public StoppableTracer {
             .flat = bvh.flat_triangles()};
   }
 
-  static void add_pass(gpu::FramePlan& plan, const std::string& name,
-                       const gpu::ComputeProgram& program, const AccelerationStructure& structure,
-                       const RayStream& rays, gpu::BufferRef results) {
+  static void add_pass(gpu::FramePlan& plan, const std::string& name, const TracingProgram& program,
+                       const AccelerationStructure& structure, const RayStream& rays,
+                       gpu::BufferRef results) {
     const WalkedHierarchy bvh = walked_bvh(structure);
-    plan.pass(name, program)
+    program.pass(plan, name)
         .read(rays.count)
         .read(rays.rays)
         .read(plan.import(bvh.records))
@@ -277,8 +291,8 @@ class SoftwareTracer : public StoppableTracer {
 
   const gpu::Device& device_;
   EmbreeHandle<RTCDevice> embree_;
-  gpu::ComputeProgram closest_;
-  gpu::ComputeProgram any_;
+  TracingProgram closest_;
+  TracingProgram any_;
   DeviceRefit::Programs refit_;
 };
 

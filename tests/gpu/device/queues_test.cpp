@@ -5,38 +5,11 @@
 
 #include "gpu/device/device.hpp"
 #include "gpu/memory/buffer.hpp"
+#include "tests/gpu/device/filling.hpp"
 #include "tests/support/engine.hpp"
 
 namespace heliograph::gpu {
 namespace {
-
-/// Commands that fill `buffer` with `word`, for one queue.
-class Filling {
- public:
-  Filling(const Device& device, std::uint32_t queue, const Buffer& buffer, std::uint32_t word)
-      : device_(device) {
-    VkCommandPoolCreateInfo pool{VK_STRUCTURE_TYPE_COMMAND_POOL_CREATE_INFO};
-    pool.queueFamilyIndex = device.queues().family(queue);
-    check(vkCreateCommandPool(device.handle(), &pool, nullptr, &pool_), "create a command pool");
-    VkCommandBufferAllocateInfo info{VK_STRUCTURE_TYPE_COMMAND_BUFFER_ALLOCATE_INFO};
-    info.commandPool = pool_;
-    info.commandBufferCount = 1;
-    check(vkAllocateCommandBuffers(device.handle(), &info, &commands), "allocate commands");
-    const VkCommandBufferBeginInfo begin{VK_STRUCTURE_TYPE_COMMAND_BUFFER_BEGIN_INFO};
-    check(vkBeginCommandBuffer(commands, &begin), "begin commands");
-    vkCmdFillBuffer(commands, buffer.handle(), 0, VK_WHOLE_SIZE, word);
-    check(vkEndCommandBuffer(commands), "end commands");
-  }
-  ~Filling() { vkDestroyCommandPool(device_.handle(), pool_, nullptr); }
-  Filling(const Filling&) = delete;
-  Filling& operator=(const Filling&) = delete;
-
-  VkCommandBuffer commands = VK_NULL_HANDLE;
-
- private:
-  const Device& device_;
-  VkCommandPool pool_ = VK_NULL_HANDLE;
-};
 
 TEST(Queues, EachCountsItsOwnSubmissions) {
   const Device& device = test::device();
@@ -65,6 +38,7 @@ TEST(Queues, ProcessorsHaveOneForEverything) {
   EXPECT_EQ(device.queues().compute_count(), 1u);
   EXPECT_EQ(device.queues().idlest_compute(), Queues::general);
   EXPECT_EQ(device.queues().families().size(), 1u);
+  EXPECT_FALSE(device.queues().is_crowded());
 }
 
 TEST(Queues, ComputeGoesToOneWithoutWork) {
