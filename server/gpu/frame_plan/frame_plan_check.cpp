@@ -62,6 +62,10 @@ std::string mismatch(const ShaderBinding& binding, const Image* image, const std
   return {};
 }
 
+bool is_same_size(const VkExtent3D& a, const VkExtent3D& b) {
+  return a.width == b.width && a.height == b.height && a.depth == b.depth;
+}
+
 bool take_the_same(const Program& a, const Program& b) {
   const auto same = [](const ShaderBinding& x, const ShaderBinding& y) {
     return x.binding == y.binding && x.type == y.type && x.count == y.count && x.reads == y.reads &&
@@ -119,6 +123,12 @@ void FramePlan::check_pass(const Pass& pass) const {
   }
   if (pass.in_a_crowd && !take_the_same(*pass.program, *pass.in_a_crowd)) {
     fail("the shader that runs in a crowd takes other bindings or constants");
+  }
+  if (pass.in_a_crowd && !is_same_size(pass.local_size, pass.in_a_crowd->local_size())) {
+    fail("the shader that runs in a crowd has workgroups of another size");
+  }
+  if (pass.in_a_crowd && (pass.is_raster || pass.rays)) {
+    fail("only compute shaders can be replaced in a crowd");
   }
   const bool dispatched = pass.threads.of(extent_).width > 0 || pass.indirect;
   if (!pass.is_raster && !dispatched) fail("it is never dispatched");

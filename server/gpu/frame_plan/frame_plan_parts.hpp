@@ -53,7 +53,7 @@ struct FramePlan::Pass {
   ProgramSource make_program;        // when the plan is compiled, unless only the host runs
   const Program* program = nullptr;  // null: a host pass
   const RayProgram* rays = nullptr;  // `program`, where it is a ray tracing pipeline
-  const ComputeProgram* in_a_crowd = nullptr;  // instead of `program`
+  const ComputeProgram* in_a_crowd = nullptr;  // program_of() says when
   bool is_raster = false;
   VkExtent3D local_size{1, 1, 1};
   std::vector<Use> bound;      // in binding order

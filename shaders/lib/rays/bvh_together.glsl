@@ -91,8 +91,8 @@ bool walk(inout Hit hit) {
 bool has_links_waiting() { return waiting > bottom + 1u; }
 bool can_give() { return has_links_waiting() || (record != top_level && waiting_above > 1u); }
 
-/// The link that would be visited next but one: closer to the ray's origin than the others, it is
-/// the least likely to be behind a hit.
+/// The link that waits for the shortest time: closer to the ray's origin than others of its level,
+/// it is the least likely to be behind a hit.
 void give(uint place) {
   const bool of_level = has_links_waiting();
   given_owner[place] = owner;
@@ -107,7 +107,7 @@ void take(uint place) {
 }
 
 /// Lanes of the subgroup that are idle take over from those that can give. `first`: the subgroup's
-/// first lane.
+/// first lane; the others follow it by gl_LocalInvocationIndex.
 void exchange(uint first) {
   const bool idle = owner == no_owner;
   const bool gives = !idle && can_give();
@@ -123,7 +123,8 @@ void exchange(uint first) {
   subgroupBarrier();
 }
 
-/// Of several lanes with hits of the same ray the closest one's is kept; of equal ones, one.
+/// Of several lanes with hits of the same ray the closest one's is kept. Which of equal ones, as on
+/// coincident surfaces, depends on the rays that share the subgroup.
 void report(Hit hit) {
   const bool found = hit.instance != hit_none;
   if (!subgroupAny(found)) return;

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <cstdint>
+
 #include "gpu/device/device.hpp"
+#include "gpu/device/vulkan.hpp"
 #include "gpu/memory/buffer.hpp"
 
 namespace heliograph::gpu {

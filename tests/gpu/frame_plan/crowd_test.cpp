@@ -1,4 +1,5 @@
 // What runs in frames that begin while the device works on many others.
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -8,7 +9,8 @@
 namespace heliograph::gpu {
 namespace {
 
-/// Work on some of a device's queues for compute, which ends when this does.
+/// Work on some of a device's queues for compute. It waits for the next submission to the general
+/// queue, such as that of a download, at the latest for the end of this.
 class Crowd {
  public:
   Crowd(const Device& device, std::uint32_t queues) : device_(device) {
@@ -73,6 +75,12 @@ TEST_F(FramePlanTest, ErrorNamesShaderForCrowdsWithOtherBindings) {
   const ComputeProgram other(device_, test::shaders::sample_image);
   add("brighten", image("a"), image("b")).in_a_crowd(other);
   expect_complaint({"\"brighten\"", "in a crowd", "other bindings"});
+}
+
+TEST_F(FramePlanTest, ErrorNamesShaderForCrowdsWithOtherWorkgroups) {
+  const ComputeProgram other(device_, test::shaders::add_in_rows);
+  add("brighten", image("a"), image("b")).in_a_crowd(other);
+  expect_complaint({"\"brighten\"", "in a crowd", "workgroups"});
 }
 
 }  // namespace
