@@ -45,7 +45,8 @@ class Queues {
   /// The queue for compute with the least work before it: the first if there is none for compute
   /// alone. Thread safe.
   std::uint32_t idlest_compute() const;
-  /// Whether most of several queues for compute have work. Thread safe.
+  /// Whether more than two of the queues for compute alone, and more than half of them, have work:
+  /// never where there are fewer than three. Thread safe.
   bool is_crowded() const;
 
   /// Returns at once. The device begins when it is done with `after`, if that is given. Thread

@@ -192,7 +192,8 @@ class FramePlan {
   std::vector<std::uint8_t> read();
   /// Of every pass, in the order declared; below 0 where it did not run. Devices that overlap
   /// passes run them one after the other where they are timed: in one of sixteen frames, and where
-  /// a pass runs that was never timed. In frames between, the times are the newest of each pass.
+  /// a pass runs that was never timed. In frames between, the times are the newest of each pass,
+  /// also if it runs another shader then (PassBuilder::in_a_crowd).
   const std::vector<PassTiming>& timings() const { return timings_; }
   /// The work behind the timings of the frame that just ran, in the same order. Copies counts back
   /// from the device: for measurements, not for every frame.
