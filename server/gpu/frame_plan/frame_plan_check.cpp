@@ -62,19 +62,6 @@ std::string mismatch(const ShaderBinding& binding, const Image* image, const std
   return {};
 }
 
-bool is_same_size(const VkExtent3D& a, const VkExtent3D& b) {
-  return a.width == b.width && a.height == b.height && a.depth == b.depth;
-}
-
-bool take_the_same(const Program& a, const Program& b) {
-  const auto same = [](const ShaderBinding& x, const ShaderBinding& y) {
-    return x.binding == y.binding && x.type == y.type && x.count == y.count && x.reads == y.reads &&
-           x.writes == y.writes && x.format == y.format;
-  };
-  return std::ranges::equal(a.pass_bindings(), b.pass_bindings(), same) &&
-         a.constants_size() == b.constants_size();
-}
-
 }  // namespace
 
 std::vector<Use> FramePlan::Pass::all_uses() const {
@@ -85,6 +72,19 @@ std::vector<Use> FramePlan::Pass::all_uses() const {
   if (depth) uses.push_back({depth->resource, Access::write});
   if (indirect) uses.push_back({indirect->first, Access::read});
   return uses;
+}
+
+std::string FramePlan::Pass::wrong_in_a_crowd() const {
+  if (!in_a_crowd) return {};
+  if (is_raster || rays) return "only compute shaders can be replaced in a crowd";
+  const auto interface_of = [](const Program& shader, const VkExtent3D& groups) {
+    return Reflection{shader.pass_bindings(), shader.constants_size(), groups};
+  };
+  const std::string difference = interface_difference(
+      interface_of(*program, local_size), interface_of(*in_a_crowd, in_a_crowd->local_size()));
+  if (difference.empty()) return {};
+  return "the shader that runs in a crowd takes other bindings, constants or workgroups: " +
+         difference;
 }
 
 void FramePlan::check_pass(const Pass& pass) const {
@@ -121,15 +121,8 @@ void FramePlan::check_pass(const Pass& pass) const {
     fail("the shader takes " + std::to_string(pass.program->constants_size()) +
          " bytes of constants, given " + std::to_string(pass.constants_size));
   }
-  if (pass.in_a_crowd && !take_the_same(*pass.program, *pass.in_a_crowd)) {
-    fail("the shader that runs in a crowd takes other bindings or constants");
-  }
-  if (pass.in_a_crowd && !is_same_size(pass.local_size, pass.in_a_crowd->local_size())) {
-    fail("the shader that runs in a crowd has workgroups of another size");
-  }
-  if (pass.in_a_crowd && (pass.is_raster || pass.rays)) {
-    fail("only compute shaders can be replaced in a crowd");
-  }
+  const std::string wrong = pass.wrong_in_a_crowd();
+  if (!wrong.empty()) fail(wrong);
   const bool dispatched = pass.threads.of(extent_).width > 0 || pass.indirect;
   if (!pass.is_raster && !dispatched) fail("it is never dispatched");
   if (pass.is_raster && !pass.draw) fail("it draws nothing");

@@ -88,6 +88,8 @@ struct FramePlan::Pass {
   bool runs_on_host() const { return host || (kernel && (!kernel_known || kernel_known())); }
   /// Everything the pass touches: bindings, attachments, indirect arguments.
   std::vector<Use> all_uses() const;
+  /// What is wrong with the shader that runs in a crowd, if there is one; empty: nothing.
+  std::string wrong_in_a_crowd() const;
 };
 
 }  // namespace heliograph::gpu

@@ -163,10 +163,30 @@ class Reflector {
   Reflection result_;
 };
 
+bool same_interface(const ShaderBinding& a, const ShaderBinding& b) {
+  return a.set == b.set && a.binding == b.binding && a.type == b.type && a.count == b.count &&
+         a.reads == b.reads && a.writes == b.writes && a.format == b.format;
+}
+
 }  // namespace
 
 Reflection reflect(const ShaderBinary& shader) {
   return Reflector(shader).run();
+}
+
+std::string interface_difference(const Reflection& built, const Reflection& now) {
+  for (std::size_t i = 0; i < std::max(built.bindings.size(), now.bindings.size()); ++i) {
+    const bool both = i < built.bindings.size() && i < now.bindings.size();
+    if (both && same_interface(built.bindings[i], now.bindings[i])) continue;
+    const ShaderBinding& which = i < now.bindings.size() ? now.bindings[i] : built.bindings[i];
+    return "set " + std::to_string(which.set) + " binding " + std::to_string(which.binding) +
+           " \"" + which.name + "\"";
+  }
+  if (built.constants_size != now.constants_size) return "the size of the push constants";
+  const auto& a = built.local_size;
+  const auto& b = now.local_size;
+  if (a.width != b.width || a.height != b.height || a.depth != b.depth) return "the workgroup size";
+  return {};
 }
 
 }  // namespace heliograph::gpu

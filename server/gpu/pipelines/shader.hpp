@@ -37,6 +37,9 @@ struct Reflection {
 /// @throws GpuError naming the shader when the words are not SPIR-V
 Reflection reflect(const ShaderBinary& shader);
 
+/// What of a shader differs from what the passes of another one were written for; empty: nothing.
+std::string interface_difference(const Reflection& built, const Reflection& now);
+
 /// Descriptor sets that the caller binds, by set number, checked against what the shader declares.
 using SharedLayouts = std::map<std::uint32_t, const DescriptorLayout*>;
 

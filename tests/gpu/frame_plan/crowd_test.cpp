@@ -74,13 +74,13 @@ TEST_F(CrowdTest, AnotherShaderRuns) {
 TEST_F(FramePlanTest, ErrorNamesShaderForCrowdsWithOtherBindings) {
   const ComputeProgram other(device_, test::shaders::sample_image);
   add("brighten", image("a"), image("b")).in_a_crowd(other);
-  expect_complaint({"\"brighten\"", "in a crowd", "other bindings"});
+  expect_complaint({"\"brighten\"", "in a crowd", "other bindings", "set 1 binding 0"});
 }
 
 TEST_F(FramePlanTest, ErrorNamesShaderForCrowdsWithOtherWorkgroups) {
   const ComputeProgram other(device_, test::shaders::add_in_rows);
   add("brighten", image("a"), image("b")).in_a_crowd(other);
-  expect_complaint({"\"brighten\"", "in a crowd", "workgroups"});
+  expect_complaint({"\"brighten\"", "in a crowd", "workgroups", "the workgroup size"});
 }
 
 }  // namespace

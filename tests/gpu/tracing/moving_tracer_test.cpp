@@ -12,15 +12,6 @@ bool stays(std::uint32_t instance) {
   return instance % 4 == 3;
 }
 
-/// A clip with channels for all nodes but those that stay.
-scene::Clip clip_of(const scene::Scene& scene) {
-  scene::Clip clip;
-  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-    if (!stays(i)) clip.channels.push_back({.node = scene.instances[i].node});
-  }
-  return clip;
-}
-
 /// Moves every third instance that does not stay, scales one of them flat, and deforms the meshes.
 std::vector<std::uint32_t> move_and_deform(scene::Scene& scene, Random& random,
                                            std::uint32_t step) {
@@ -49,7 +40,7 @@ class MovingTracerTest : public TracerTest {};
 
 TEST_P(MovingTracerTest, MatchesBruteForceForMovingAndDeformedMeshes) {
   scene::Scene scene = two_level_scene(10);
-  scene.clips.push_back(clip_of(scene));
+  scene.clips.push_back(clip_of(scene, [](std::uint32_t i) { return !stays(i); }));
   constexpr std::uint32_t a_sphere = 1, a_masked_quad = 4;
   for (const std::uint32_t mesh : {a_sphere, a_masked_quad}) {
     scene.deformations.push_back({.mesh = mesh, .shape = 0, .node = 0, .skin = {}});

@@ -42,14 +42,10 @@ class TraceTogetherAndApart : public TraceTogether {
 };
 
 /// Of every `step` instances a clip can move one, which is not part of the flat tree; 0: none.
-scene::Scene scene_with_clip(std::uint32_t seed, std::size_t step) {
+scene::Scene scene_with_clip(std::uint32_t seed, std::uint32_t step) {
   scene::Scene scene = two_level_scene(seed);
   if (step == 0) return scene;
-  scene::Clip clip;
-  for (std::size_t i = 0; i < scene.instances.size(); i += step) {
-    clip.channels.push_back({.node = scene.instances[i].node});
-  }
-  scene.clips.push_back(clip);
+  scene.clips.push_back(clip_of(scene, [step](std::uint32_t i) { return i % step == 0; }));
   return scene;
 }
 
@@ -67,7 +63,7 @@ void expect_the_same(const TraceResults& together, const TraceResults& apart) {
 }
 
 TEST_F(TraceTogetherAndApart, FindTheSame) {
-  for (const std::size_t step : {0, 1, 2}) {
+  for (const std::uint32_t step : {0, 1, 2}) {
     const scene::Scene scene = scene_with_clip(21, step);
     const TracedScene together = traced_together(scene);
     const TracedScene apart = traced(scene, protocol::TracerKind::software);
@@ -97,7 +93,7 @@ TEST_F(TraceTogetherAndApart, LetTheSameRaysThroughBlendedSurfaces) {
 }
 
 TEST_F(TraceTogether, MatchesBruteForce) {
-  for (const std::size_t step : {0, 1, 2}) {
+  for (const std::uint32_t step : {0, 1, 2}) {
     const scene::Scene scene = scene_with_clip(23, step);
     const std::vector<shared::Ray> rays = random_rays(scene, 5000, 23);
     EXPECT_LT(disagreement(traced_together(scene).trace(rays), brute_force(scene, rays)), 1e-3)

@@ -181,6 +181,16 @@ class TracerTest : public TracersTest, public testing::WithParamInterface<protoc
   }
 };
 
+/// A clip with channels for the instances for which `moves` is true.
+template <typename Predicate>
+scene::Clip clip_of(const scene::Scene& scene, Predicate moves) {
+  scene::Clip clip;
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+    if (moves(i)) clip.channels.push_back({.node = scene.instances[i].node});
+  }
+  return clip;
+}
+
 /// Fraction of rays with different results.
 inline double disagreement(const TraceResults& a, const TraceResults& b) {
   std::size_t different = 0;
