@@ -134,11 +134,15 @@ open.test("an environment is uploaded, shown, and found by its thumbnail", async
   await drop(page, "Blue sky.hdr", panorama);
   const chosen = async () => (await open.server.call("environment.list")).current;
   await eventually(async () => (await chosen()) === "Blue_sky", "the dropped environment");
-  assert.equal(await page.locator("select[name=environment]").inputValue(), "Blue_sky");
+  const choice = page.locator("select[name=environment]");
+  await eventually(async () => (await choice.inputValue()) === "Blue_sky", "the chosen environment");
   await page.getByRole("button", { name: "Show thumbnails of all environments" }).click();
   const tiles = page.getByRole("group", { name: "Environments" });
   const tile = tiles.getByRole("button", { name: "Blue_sky", exact: true });
-  assert.equal(await tile.getAttribute("aria-pressed"), "true");
+  await eventually(
+    async () => (await tile.getAttribute("aria-pressed")) === "true",
+    "its mark as chosen",
+  );
   await eventually(
     () => tile.locator("img").evaluate((image) => image.naturalWidth === 160),
     "its thumbnail",
