@@ -128,8 +128,9 @@ SessionView::Work SessionView::advance(bool may_draw) {
     if (begin_making()) return Work::small;
     make_renderer(state_of_new_renderer());
   }
-  keep_buffers();
-  if (session_->timeline().in_lockstep()) return advance_step(may_draw);
+  const bool lockstep = session_->timeline().in_lockstep();
+  keep_buffers(lockstep);
+  if (lockstep) return advance_step(may_draw);
   newest_stepped_ = false;
   adopt_state();
   adopt_draw_scale();

@@ -103,7 +103,7 @@ class SessionView {
   void adopt_moment();
   bool clip_switches_nodes() const;
   void adopt_draw_scale();
-  void keep_buffers();
+  void keep_buffers(bool lockstep);
   void set_draw_scale(float scale);
   void measure_frame(ViewState state, Clock::duration taken);
   bool depth_pays() const;

@@ -127,10 +127,9 @@ float SessionView::next_draw_scale() const {
 }
 
 /// What will be read after a step is not known before it.
-void SessionView::keep_buffers() {
+void SessionView::keep_buffers(bool lockstep) {
   if (readers_.read_buffers()) buffers_read_at_ = Clock::now();
-  renderer_->keep_buffers(session_->timeline().in_lockstep() ||
-                          Clock::now() < buffers_read_at_ + keep_buffers_after);
+  renderer_->keep_buffers(lockstep || Clock::now() < buffers_read_at_ + keep_buffers_after);
 }
 
 /// The path traced reference is not reconstructed: where it is shown alone, frames are smaller.
