@@ -1,7 +1,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 8, local_size_y = 8) in;
-// Composes the frame from denoised signals, and the same from this frame's noisy ones.
+// Composes the frame from denoised signals, and where it is needed from this frame's noisy ones.
 #include "lib/lighting/composition.glsl"
 
 layout(set = 1, binding = 11) uniform sampler2D denoised_visibility;
@@ -18,5 +18,6 @@ void main() {
   vec3 mirrored = max_roughness < 0.0 ? vec3(0.0) : texelFetch(denoised_specular, pixel, 0).rgb;
   vec3 around = enabled(frame_indirect) ? texelFetch(denoised_indirect, pixel, 0).rgb : vec3(0.0);
   imageStore(hdr, pixel, composed(shares, visibility, mirrored, around));
+  if (makes_noisy == 0u) return;
   imageStore(hdr_raw, pixel, composed_of_raw_signals(shares, pixel, around));
 }

@@ -10,7 +10,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/denoise/rectification.glsl"
 #include "lib/denoise/reprojection.glsl"
 
-layout(set = 1, binding = 0) uniform sampler2D raw;  // shadow x, ambient y
+layout(set = 1, binding = 0) uniform sampler2D raw;  // shadow x, ambient y (0 where none is traced)
 layout(set = 1, binding = 1, rgba32f) readonly uniform image2D guide;
 layout(set = 1, binding = 2, rgba32f) readonly uniform image2D reprojection;
 layout(set = 1, binding = 3, rgba16) readonly uniform image2D previous_signal;
@@ -99,7 +99,7 @@ vec2 rectify(ivec2 pixel, vec2 old) {
 void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (outside_frame(pixel)) return;
-  vec2 now = texelFetch(raw, pixel, 0).xy;
+  vec2 now = sanitize(texelFetch(raw, pixel, 0).rgb).xy;
   uvec4 rounding = rounding_of(pixel, frame.sample_index);
   if (guide_is_background(imageLoad(guide, pixel))) {
     imageStore(signal, pixel, vec4(now, vec2(0.0)));

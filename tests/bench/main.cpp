@@ -134,6 +134,7 @@ struct Run {
       : renderer(engine) {
     renderer.set_scene(resources);
     renderer.set_size(extent.width, extent.height);
+    renderer.keep_buffers(false);  // as sessions do
     const auto accepted = renderer.set_settings(settings);
     if (!accepted) throw std::runtime_error(accepted.error().message);
   }
@@ -223,7 +224,6 @@ nlohmann::json measure(render::Engine& engine, RecordingTracer& tracer, const sc
   Run run(engine, resources, extent, settings);
   run.renderer.set_draw_scale(options.draw_scale);
   if (options.jpeg > 0) run.renderer.request_jpeg(render::JpegRequest{options.jpeg});
-  if (options.overlap) run.renderer.keep_buffers(false);
   const scene::Camera camera = first_camera(scene, extent);
   for (int i = 0; i < options.warm_up + options.frames; ++i) {
     for (Run* each : {&run, shaders ? &*shaders : nullptr}) {

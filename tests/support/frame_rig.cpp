@@ -31,6 +31,7 @@ FrameRig::FrameRig(std::shared_ptr<const scene::Scene> scene, const scene::Camer
               clock_,
               moving_,
               scene_motion_,
+              all_buffers_,
               parts_.split_sum_table,
               parts_.sheen_table,
               parts_.ltc_table,

@@ -52,6 +52,8 @@ class FrameRig {
   void let_reference_take_over() { clock_.hybrid_samples = clock_.samples; }
   /// Time since the previous frame, in seconds.
   void set_seconds(float seconds) { clock_.seconds = seconds; }
+  /// Whether more of frames from the next one on is read than what they show, as at first.
+  void read_all_buffers(bool all) { all_buffers_ = all; }
   /// Motion of lights and geometry in the next frame.
   void set_scene_motion(const render::SceneMotion& motion) { scene_motion_ = motion; }
 
@@ -82,6 +84,7 @@ class FrameRig {
   shared::FrameConstants half_constants_{};
   render::FrameClock clock_;
   render::SceneMotion scene_motion_;
+  bool all_buffers_ = true;
   bool has_view_ = false;
   bool compiled_ = false;
   render::FrameConstantsBuffers constants_buffers_;

@@ -89,8 +89,8 @@ class FramePlan {
   }
   /// Before compile(): an image that can be read after every frame.
   void keep(ImageRef image) { kept_.push_back(image.index); }
-  /// Before compile(): an image that no pass uses in frames that skip those that write it. It has
-  /// no defined content then, unless images are kept.
+  /// Before compile(): an image of whose content no pass makes use in frames that skip those that
+  /// write it, nor the next frame of a history's. It is not defined then, unless images are kept.
   void leave_undefined_when_skipped(ImageRef image) {
     undefined_when_skipped_.push_back(image.index);
   }

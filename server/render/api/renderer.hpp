@@ -82,8 +82,8 @@ class Renderer {
   protocol::Result<void> set_settings(const protocol::Settings& settings);
 
   /// Whether all buffers can be read after the frames from the next one on, as they can at first:
-  /// that takes more memory. Otherwise these: the output, its radiance, and what was picked from.
-  /// Nothing else follows from it.
+  /// that takes more memory, and more time while the view moves. Otherwise these: the output, its
+  /// radiance, and what was picked from. What frames show does not depend on it.
   void keep_buffers(bool keep);
   /// Whether the last frame kept them.
   bool has_buffers() const;

@@ -18,8 +18,8 @@ namespace heliograph::render {
 /// passes that the settings asked for when it was made.
 struct CompiledFrame {
   /// References in `inputs`, and the others, outlive this. `keeps_buffers`: whether all images can
-  /// be read after a frame, or just the output and the histories. `jpeg`: of each frame, none where
-  /// its pixels come back.
+  /// be read after a frame, or just the output and the denoisers' histories. `jpeg`: of each frame,
+  /// none where its pixels come back.
   CompiledFrame(const Engine::Parts& parts, const FrameInputs& inputs,
                 const FrameConstantsSlots& constants_buffers, VkExtent2D extent, bool keeps_buffers,
                 const std::optional<JpegRequest>& jpeg);

@@ -1,5 +1,7 @@
 #include "render/frame/frame.hpp"
 
+#include <functional>
+
 #include "render/passes/blend/blend_surfaces.hpp"
 #include "render/passes/compose/compose.hpp"
 #include "render/passes/compose/skybox.hpp"
@@ -23,6 +25,7 @@
 #include "render/passes/reflections/trace_specular.hpp"
 #include "render/passes/sampling/plan_samples.hpp"
 #include "render/passes/visibility/trace_visibility.hpp"
+#include "render/resources/ground_plane.hpp"
 
 namespace heliograph::render {
 namespace {
@@ -67,13 +70,19 @@ bool blurs_together(const gpu::FramePlan& plan, const protocol::Settings& settin
          can_blur_together(plan, settings.shadow_blur, settings.specular_blur);
 }
 
+/// Those of which more is read than what they show.
+std::function<bool()> whole_frames(const FrameInputs& in) {
+  return [in] { return !is_only_shown(in); };
+}
+
 /// Visibility and reflections without noise, where blurs_together().
 void denoise_together(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                       const Reprojected& from, const NoisySignals& noisy,
                       DenoisedSignals& denoised) {
   std::optional<SignalBlur> visibility;
   plan.only_when(traces_visibility(in), [&] {
-    const gpu::ImageRef combined = combine_visibility(plan, in, noisy.shadows, noisy.ambient);
+    const gpu::ImageRef combined =
+        combine_visibility(plan, in, noisy.shadows, noisy.ambient, whole_frames(in));
     visibility.emplace(visibility_to_blur(plan, in, gbuffer, from.guide, from.histories, combined));
   });
   const SignalBlur specular =
@@ -88,7 +97,8 @@ void denoise_apart(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& g
                    const Reprojected& from, const NoisySignals& noisy, DenoisedSignals& denoised) {
   // Visibility that is not traced is not read either.
   plan.only_when(traces_visibility(in), [&] {
-    denoised.visibility = combine_visibility(plan, in, noisy.shadows, noisy.ambient);
+    denoised.visibility =
+        combine_visibility(plan, in, noisy.shadows, noisy.ambient, whole_frames(in));
     if (!denoises_visibility(in.settings)) return;
     denoised.visibility =
         denoise_visibility(plan, in, gbuffer, from.guide, from.histories, denoised.visibility);
@@ -126,6 +136,14 @@ gpu::ImageRef trace_reference_when_due(gpu::FramePlan& plan, const FrameInputs& 
   return traced;
 }
 
+/// The background is an image of its own where it holds shadows, and on processors, whose kernels
+/// look it up for whole rows.
+ComposeConditions when_not_only_shown(const gpu::FramePlan& plan, const FrameInputs& in) {
+  const auto whole = whole_frames(in);
+  if (plan.device().is_cpu() || catches_shadows(in.settings, in.moving)) return {{}, whole};
+  return {whole, whole};
+}
+
 /// Blends the frame with the mean of its samples.
 FrameOutputs show(gpu::FramePlan& plan, const FrameInputs& in, const gpu::History& accumulated,
                   const Exposure& exposure, gpu::ImageRef radiance) {
@@ -144,6 +162,10 @@ FrameOutputs declare_reference(gpu::FramePlan& plan, const FrameInputs& in, gpu:
 }
 
 }  // namespace
+
+bool is_only_shown(const FrameInputs& in) {
+  return !in.all_buffers && leaves_samples_out(in) && !weighs_mean(in);
+}
 
 // The stages of the paper's section 3, in its order; the prefilter ran when the environment came.
 FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
@@ -186,14 +208,16 @@ FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in) {
   // What is left takes little time, unless it traces rays.
   if ((in.moving.features_without_emission() & shared::scene_blends) == 0)
     plan.finish_frames_from_here();
-  const gpu::ImageRef background = draw_skybox(plan, in, gbuffer);
+  const ComposeConditions when = when_not_only_shown(plan, in);
+  const gpu::ImageRef background = draw_skybox(plan, in, gbuffer, when.has_background);
   shade_ground(plan, in, gbuffer, ground, background);
-  const Composed sharp = compose(plan, in, gbuffer, noisy, denoised, background);
+  const Composed sharp = compose(plan, in, gbuffer, noisy, denoised, background, when);
   GBuffer visible = gbuffer;
   visible.motion = blend_surfaces(plan, in, gbuffer, sharp, cache, blended);
   const Composed composed = defocus(plan, in, gbuffer, sharp);
 
-  const gpu::History accumulated = accumulate(plan, in, composed.noisy, traced);
+  const gpu::History accumulated =
+      accumulate(plan, in, composed.noisy, composed.makes_noisy, traced);
   const Exposure exposure = expose(plan, in, composed.hdr, accumulated.current);
   const gpu::ImageRef resolved = temporal_antialias(plan, in, visible, exposure, composed.hdr);
   FrameOutputs outputs = show(plan, in, accumulated, exposure, resolved);

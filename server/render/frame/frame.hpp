@@ -20,6 +20,10 @@ struct FrameOutputs {
   std::optional<RadianceCache> radiance_cache{};
 };
 
+/// Whether nothing of this frame is read but what it shows: its noisy radiance is no part of a
+/// mean, and its buffers are not asked for. Some of them have no content then.
+bool is_only_shown(const FrameInputs& in);
+
 /// Declares all passes of a frame, in order.
 FrameOutputs declare_frame(gpu::FramePlan& plan, const FrameInputs& in);
 

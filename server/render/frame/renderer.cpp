@@ -222,7 +222,8 @@ bool Renderer::begin(const std::function<bool()>& canceled) {
   compiled.has_frame = false;
   state.stale = false;
   state.has_buffers = false;
-  compiled.plan.keep_images(state.buffers_needed());
+  state.all_buffers = state.buffers_needed();
+  compiled.plan.keep_images(state.all_buffers);
   if (state.pose()) {
     const auto posed = std::chrono::steady_clock::now();
     const std::chrono::duration<float, std::milli> posing = posed - begun.start;
@@ -236,6 +237,7 @@ bool Renderer::begin(const std::function<bool()>& canceled) {
   state.make_constants(before);
   if (compiled.plan.begin(canceled)) {
     compiled.uniform_weight = uniform_mean_weight(compiled.inputs);
+    begun.only_shown = is_only_shown(compiled.inputs);
     state.begun.push_back(begun);
     state.count_sample();
     return true;
@@ -272,7 +274,7 @@ Frame Renderer::finish() {
   state.begun.pop_front();
   const bool newest = state.begun.empty();
   compiled.has_frame = newest;
-  state.has_buffers = newest && compiled.plan.keeps_images();
+  state.has_buffers = newest && compiled.plan.keeps_images() && !begun.only_shown;
 
   Frame frame = state.output(begun.jpeg);
   if (state.parts.shader_reload) {

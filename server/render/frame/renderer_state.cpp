@@ -68,6 +68,7 @@ CompiledFrame& Renderer::State::frame_plan() {
                            clock,
                            *moving,
                            scene_motion,
+                           all_buffers,
                            parts.split_sum_table,
                            parts.sheen_table,
                            parts.ltc_table,

@@ -37,6 +37,7 @@ struct Renderer::State {
     std::optional<float> posing;  // milliseconds; absent: nothing moved
     bool new_buffers = false;
     std::optional<JpegRequest> jpeg;
+    bool only_shown = false;    // is_only_shown()
     std::uint32_t samples = 0;  // with it
   };
 
@@ -83,6 +84,7 @@ struct Renderer::State {
   FrameClock clock;
   SceneMotion scene_motion;
   bool keeps_buffers = true;          // as requested
+  bool all_buffers = true;            // of the frame that begins
   bool has_buffers = false;           // of the last frame
   bool stale = true;                  // something changed since the last frame
   std::uint64_t shader_version = 0;   // of ShaderReload::version, as of the last frame

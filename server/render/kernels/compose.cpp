@@ -86,27 +86,35 @@ class Composition {
     if (!hn::AllTrue(d_, seen)) {
       terms.own = select(seen, terms.own, color(job_.background, x, y));
     }
-    const V shadow = load_one(job_.shadows, x, y), ambient = load_one(job_.ambient, x, y);
-    const bool reflects = job_.constants.max_roughness >= 0.0f;
-    const bool gathers = enabled(shared::frame_indirect);
-    Signals noisy{shadow, ambient, reflects ? color(job_.specular, x, y) : black(), black()};
-    M sampled = hn::Eq(hn::Zero(d_), hn::Zero(d_));
-    if (gathers) {
-      const Quad<V> indirect = load(job_.indirect, x, y);
-      noisy.indirect = {indirect.x, indirect.y, indirect.z};
-      sampled = hn::Ge(indirect.w, hn::Zero(d_));
-    }
     if (!job_.denoised_visibility) {
-      store(terms, noisy, job_.hdr, x, y);
+      store(terms, noisy(x, y, black()), job_.hdr, x, y);
       return;
     }
+    const Signals smooth = denoised(x, y);
+    store(terms, smooth, job_.hdr, x, y);
+    if (job_.constants.makes_noisy == 0) return;
+    store(terms, noisy(x, y, smooth.indirect), job_.hdr_noisy, x, y);
+  }
+
+  HWY_INLINE bool reflects() const { return job_.constants.max_roughness >= 0.0f; }
+
+  HWY_INLINE Signals denoised(int x, int y) const {
     const Quad<V> visibility = load(job_.denoised_visibility, x, y);
-    const Signals denoised{visibility.x, visibility.y,
-                           reflects ? color(job_.denoised_specular, x, y) : black(),
-                           gathers ? color(job_.denoised_indirect, x, y) : black()};
-    store(terms, denoised, job_.hdr, x, y);
-    noisy.indirect = select(sampled, noisy.indirect, denoised.indirect);
-    store(terms, noisy, job_.hdr_noisy, x, y);
+    const bool gathers = enabled(shared::frame_indirect);
+    return {visibility.x, visibility.y, reflects() ? color(job_.denoised_specular, x, y) : black(),
+            gathers ? color(job_.denoised_indirect, x, y) : black()};
+  }
+
+  /// `smooth_indirect`: where there is no sample.
+  HWY_INLINE Signals noisy(int x, int y, const Triple<V>& smooth_indirect) const {
+    Signals made{load_one(job_.shadows, x, y), load_one(job_.ambient, x, y),
+                 reflects() ? color(job_.specular, x, y) : black(), smooth_indirect};
+    if (enabled(shared::frame_indirect)) {
+      const Quad<V> indirect = load(job_.indirect, x, y);
+      const M sampled = hn::Ge(indirect.w, hn::Zero(d_));
+      made.indirect = select(sampled, {indirect.x, indirect.y, indirect.z}, smooth_indirect);
+    }
+    return made;
   }
 
   HWY_INLINE void add_surface(const ViewedRow<D>& view, int x, int y, V view_z, M seen,

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "render/kernels/common/frame_job.hpp"
@@ -21,7 +22,9 @@ struct ComposeBindings {
   gpu::OptionalWrite<Stage> hdr_noisy;
 };
 struct ComposeConstants {
-  float max_roughness;  // below 0: no reflections were traced
+  float max_roughness;           // below 0: no reflections were traced
+  std::uint32_t has_background;  // 0, for shaders alone: looked up, there is no image of it
+  std::uint32_t makes_noisy;     // 0: denoised radiance alone
 };
 
 struct ComposeJob : FrameJob<ComposeBindings, ComposeConstants> {

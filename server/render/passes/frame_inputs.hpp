@@ -48,8 +48,8 @@ inline glm::uvec2 size_of(VkExtent2D extent) {
   return {extent.width, extent.height};
 }
 
-/// What a frame is made from. References outlive the plan; `constants` and `clock` change in every
-/// frame.
+/// What a frame is made from. References outlive the plan; `constants`, `clock` and `all_buffers`
+/// may change in every frame.
 struct FrameInputs {
   const Programs& programs;
   const SceneResources& scene;         // in its default pose
@@ -64,6 +64,7 @@ struct FrameInputs {
   const FrameClock& clock;
   const MovingScene& moving;        // what the rasteriser draws
   const SceneMotion& scene_motion;  // since the frame before
+  const bool& all_buffers;          // whether what this frame does not show can be read, too
   // Mapped on devices that are processors.
   const gpu::Image& split_sum_table;  // rg32f
   const gpu::Image& sheen_table;      // r32f
@@ -72,9 +73,9 @@ struct FrameInputs {
 
   /// For passes that the plan reduces by 2.
   FrameInputs at_half_size() const {
-    return {programs,       scene,           tables,      tracer,    structure,
-            half_constants, half_constants,  settings,    clock,     moving,
-            scene_motion,   split_sum_table, sheen_table, ltc_table, shown};
+    return {programs,        scene,       tables,    tracer, structure,    half_constants,
+            half_constants,  settings,    clock,     moving, scene_motion, all_buffers,
+            split_sum_table, sheen_table, ltc_table, shown};
   }
 
   /// Whether this frame is drawn smaller than it is shown.

@@ -15,7 +15,11 @@ layout(set = 1, binding = 7, r32f) readonly uniform image2D shadow_visibility;
 layout(set = 1, binding = 8, r32f) readonly uniform image2D ambient_visibility;
 layout(set = 1, binding = 9, rgba32f) readonly uniform image2D specular_radiance;
 layout(set = 1, binding = 10, rgba32f) readonly uniform image2D indirect_radiance;
-layout(push_constant) uniform Constants { float max_roughness; };  // below 0: nothing was traced
+layout(push_constant) uniform Constants {
+  float max_roughness;  // below 0: nothing was traced
+  uint has_background;  // 0: `background` has no content
+  uint makes_noisy;     // 0: denoised radiance alone
+};
 
 #include "lib/scene/gbuffer_material.glsl"
 #include "lib/lighting/light_grid.glsl"
@@ -70,7 +74,8 @@ Composition lit_composition(ivec2 pixel, float view_z) {
 Composition pixel_composition(ivec2 pixel) {
   float view_z = imageLoad(motion, pixel).w;
   if (view_z <= 0.0) {
-    return without_light(imageLoad(background, pixel).rgb);
+    return without_light(has_background != 0u ? imageLoad(background, pixel).rgb
+                                              : seen_background(pixel));
   }
   Composition terms;
   if (is_unlit(pixel)) {

@@ -25,6 +25,11 @@ vec3 environment_background(vec3 world) {
   return textureLod(background_map, uv, 0.0).rgb * frame.background_intensity;
 }
 
+/// What the eye sees of it in a pixel without surfaces.
+vec3 seen_background(ivec2 pixel) {
+  return enabled(frame_environment_visible) ? environment_background(-to_eye(pixel)) : vec3(0.0);
+}
+
 /// What lights the scene. Without the sun where it is separated: that is a light of its own.
 vec3 environment_radiance(vec3 world) {
   vec2 uv = equirectangular_uv(environment_direction(world));

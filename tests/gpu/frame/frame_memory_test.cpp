@@ -87,10 +87,13 @@ class FrameMemory : public testing::Test {
   }
 
   /// The names of images that differ in any of a few frames of a moving view. `keeps`: all images
-  /// are kept, as from the `switched`th frame on in any case.
-  static std::string differences(const protocol::Settings& settings, bool keeps, int switched = 9) {
+  /// are kept, as from the `switched`th frame on in any case. Without `all_buffers` frames leave
+  /// out what they do not show.
+  static std::string differences(const protocol::Settings& settings, bool keeps, int switched = 9,
+                                 bool all_buffers = true) {
     constexpr VkExtent2D extent{70, 45};
     Frame own(settings, extent, false), sharing(settings, extent, true);
+    for (Frame* frame : {&own, &sharing}) frame->rig.read_all_buffers(all_buffers);
     std::string names;
     for (int number = 0; number < 4; ++number) {
       sharing.rig.plan().keep_images(keeps || number >= switched);
@@ -142,6 +145,19 @@ TEST_F(FrameMemory, SharingChangesNoImageOfAnyFrame) {
     change(settings);
     EXPECT_EQ(differences(settings, true), "") << name;
     EXPECT_EQ(differences(settings, false), "") << name << ", not kept";
+  }
+}
+
+TEST_F(FrameMemory, SharingChangesNoFrameThatIsOnlyShown) {
+  for (const bool lens : {false, true}) {
+    for (const auto reference :
+         {protocol::ReferenceUse::off, protocol::ReferenceUse::when_static}) {
+      protocol::Settings settings;
+      settings.lens.depth_of_field = lens;
+      settings.reference.use = reference;
+      settings.exposure.mode = protocol::ExposureMode::automatic;
+      EXPECT_EQ(differences(settings, false, 9, false), "") << lens;
+    }
   }
 }
 

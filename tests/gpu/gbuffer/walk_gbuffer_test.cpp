@@ -85,9 +85,10 @@ class RoundsAndWalk {
 
  private:
   render::FrameInputs in_rounds(const render::FrameInputs& in) const {
-    return {in.programs,     in.scene,           in.tables,      uncut_,       in.structure,
-            in.constants,    in.half_constants,  in.settings,    in.clock,     in.moving,
-            in.scene_motion, in.split_sum_table, in.sheen_table, in.ltc_table, in.shown};
+    return {in.programs,        in.scene,       in.tables,         uncut_,
+            in.structure,       in.constants,   in.half_constants, in.settings,
+            in.clock,           in.moving,      in.scene_motion,   in.all_buffers,
+            in.split_sum_table, in.sheen_table, in.ltc_table,      in.shown};
   }
   /// The part of all texels, or of those that show something, whose bytes differ.
   double differing_texels(gpu::ImageRef render::GBuffer::*image, bool of_shown) const {

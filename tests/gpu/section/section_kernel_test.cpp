@@ -20,9 +20,10 @@ const render::Section two_planes{.planes = {{0, 0, 1, 0.2f}, {0.6f, 0.8f, 0, 0.5
 
 /// The inputs with a tracer that cuts rays.
 render::FrameInputs cut_inputs(const render::FrameInputs& in, const tracing::RayTracer& tracer) {
-  return {in.programs,     in.scene,           in.tables,      tracer,       in.structure,
-          in.constants,    in.half_constants,  in.settings,    in.clock,     in.moving,
-          in.scene_motion, in.split_sum_table, in.sheen_table, in.ltc_table, in.shown};
+  return {in.programs,        in.scene,       in.tables,         tracer,
+          in.structure,       in.constants,   in.half_constants, in.settings,
+          in.clock,           in.moving,      in.scene_motion,   in.all_buffers,
+          in.split_sum_table, in.sheen_table, in.ltc_table,      in.shown};
 }
 
 TEST(SectionKernel, CutsAndClosesAsShadersDo) {

@@ -245,7 +245,7 @@ TEST_F(Views, SurfacesArePickedFromFramesThatKeepNoBuffers) {
     settings.gbuffer.source = source;
     rig_.apply(settings);
     rig_.renderer.render();
-    // On GPUs images share no memory: all are there after any frame.
+    // On GPUs images share no memory: all are there after a static view's frame.
     if (device().is_cpu()) {
       EXPECT_FALSE(rig_.renderer.has_buffers());
     }

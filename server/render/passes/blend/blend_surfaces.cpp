@@ -144,14 +144,15 @@ class BlendedSurfaces {
     }
   }
 
-  void compose_over(gpu::ImageRef frame) {
-    plan_.pass("blended.over", in_.program(shaders::blended_over))
-        .bind<kernels::BlendedOverBindings>({.radiance = to_.radiance,
+  void compose_over(gpu::ImageRef frame, const std::function<bool()>& when = {}) {
+    gpu::PassBuilder pass = plan_.pass("blended.over", in_.program(shaders::blended_over));
+    pass.bind<kernels::BlendedOverBindings>({.radiance = to_.radiance,
                                              .specular = to_.specular,
                                              .transmittance = to_.transmittance,
                                              .frame = frame})
         .dispatch(gpu::each_pixel())
         .host(kernels::blended_over);
+    if (when) pass.when(when);
   }
 
  private:
@@ -335,7 +336,9 @@ gpu::ImageRef blend_surfaces(gpu::FramePlan& plan, const FrameInputs& in, const 
   drawn ? blended.list() : blended.find();
   blended.light();
   blended.compose_over(composed.hdr);
-  if (composed.noisy.index != composed.hdr.index) blended.compose_over(composed.noisy);
+  if (composed.noisy.index != composed.hdr.index) {
+    blended.compose_over(composed.noisy, composed.makes_noisy);
+  }
   return images.motion;
 }
 

@@ -7,15 +7,25 @@
 #include "shaders/embedded.hpp"
 
 namespace heliograph::render {
+namespace {
+
+std::uint32_t is_met(const std::function<bool()>& condition) {
+  return !condition || condition() ? 1 : 0;
+}
+
+}  // namespace
 
 Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                  const NoisySignals& signals, const std::optional<DenoisedSignals>& denoised,
-                 gpu::ImageRef background) {
+                 gpu::ImageRef background, const ComposeConditions& when) {
   constexpr VkFormat format = VK_FORMAT_R32G32B32A32_SFLOAT;
   const std::uint32_t features = in.moving.features_without_emission();
   Composed composed;
   composed.hdr = composed.noisy = plan.image(compose_buffers.hdr.name, format);
-  if (denoised) composed.noisy = plan.image(compose_buffers.noisy.name, format);
+  if (denoised) {
+    composed.noisy = plan.image(compose_buffers.noisy.name, format);
+    composed.makes_noisy = when.makes_noisy;
+  }
   // Every binding has to hold an image: reflections that are not traced are not read.
   const bool reflects = signals.specular.has_value();
   const gpu::ImageRef specular = signals.specular.value_or(background);
@@ -45,8 +55,9 @@ Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbu
                                        .denoised_indirect = denoised_indirect,
                                        .hdr = composed.hdr,
                                        .hdr_noisy = noisy})
-      .constants([&s = in.settings.specular, reflects] {
-        return kernels::ComposeConstants{reflects ? s.max_roughness : -1.0f};
+      .constants([&s = in.settings.specular, reflects, when] {
+        return kernels::ComposeConstants{reflects ? s.max_roughness : -1.0f,
+                                         is_met(when.has_background), is_met(when.makes_noisy)};
       })
       .dispatch(gpu::each_pixel())
       .host([in](const kernels::ComposeJob::Pass& pass) {

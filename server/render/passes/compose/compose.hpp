@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "render/passes/gbuffer/gbuffer.hpp"
@@ -33,12 +34,21 @@ struct DenoisedSignals {
 struct Composed {
   gpu::ImageRef hdr;
   gpu::ImageRef noisy;  // from the noisy signals; the same image where nothing is denoised
+  std::function<bool()> makes_noisy{};  // frames in which that has content; empty: all of them
+};
+
+/// Frames in which compose() does more than what is shown needs; empty: all of them.
+struct ComposeConditions {
+  /// The background is an image; in other frames it is what draw_skybox() would have drawn.
+  std::function<bool()> has_background;
+  /// The noisy radiance is made.
+  std::function<bool()> makes_noisy;
 };
 
 /// Analytic direct light x traced visibility + reflections + image based light + emission over the
 /// background (paper section 3, stage 7).
 Composed compose(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                  const NoisySignals& signals, const std::optional<DenoisedSignals>& denoised,
-                 gpu::ImageRef background);
+                 gpu::ImageRef background, const ComposeConditions& when = {});
 
 }  // namespace heliograph::render

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "render/passes/gbuffer/gbuffer.hpp"
@@ -25,6 +26,8 @@ class SeenBackground {
 };
 
 /// Linear radiance of the background where no surface was drawn; elsewhere black.
-gpu::ImageRef draw_skybox(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer);
+/// @param when  frames that need it; empty: all do
+gpu::ImageRef draw_skybox(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
+                          const std::function<bool()>& when = {});
 
 }  // namespace heliograph::render

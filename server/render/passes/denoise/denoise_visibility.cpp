@@ -105,15 +105,17 @@ gpu::ImageRef blur_at_half_size(gpu::FramePlan& plan, const FrameInputs& in,
 }  // namespace
 
 gpu::ImageRef combine_visibility(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef shadows,
-                                 gpu::ImageRef ambient) {
+                                 gpu::ImageRef ambient, const std::function<bool()>& when_read) {
   const bool halves = formats::in_halves(plan);
   const auto noisy = plan.image(denoise_visibility_buffers.noisy.name,
                                 halves ? formats::two_halves : formats::four_floats);
-  plan.pass("visibility.combine", in.program(shaders::visibility_combine))
-      .bind<kernels::CombineBindings>({.shadows = shadows, .ambient = ambient, .visibility = noisy})
+  gpu::PassBuilder pass = plan.pass("visibility.combine", in.program(shaders::visibility_combine));
+  pass.bind<kernels::CombineBindings>({.shadows = shadows, .ambient = ambient, .visibility = noisy})
       .dispatch(gpu::each_pixel())
       .host(kernels::visibility_combine);
-  return noisy;
+  if (plan.uses_host_kernels() || !in.settings.indirect.enabled) return noisy;
+  if (when_read) pass.when(when_read);
+  return shadows;
 }
 
 gpu::ImageRef denoise_visibility(gpu::FramePlan& plan, const FrameInputs& in,

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "render/passes/denoise/atrous.hpp"
 #include "render/passes/denoise/temporal.hpp"
 
@@ -25,9 +27,13 @@ inline constexpr struct HalfVisibilityBuffers {
                            "size; variances (zw)."};
 } half_visibility_buffers{};
 
-/// Both visibilities in one image, as one signal: shadow x, ambient y. NaNs become 0.
+/// Both visibilities in one image, as one signal: shadow x, ambient y. NaNs become 0. Beside
+/// indirect light there is no ambient visibility: shaders denoise the shadows themselves, and the
+/// image is there to be looked at.
+/// @param when_read  frames in which it can be; empty: all of them
 gpu::ImageRef combine_visibility(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef shadows,
-                                 gpu::ImageRef ambient);
+                                 gpu::ImageRef ambient,
+                                 const std::function<bool()>& when_read = {});
 
 /// The combined visibility without its noise, and the variance left of each (z, w): the paper's
 /// stages 4 and 5.

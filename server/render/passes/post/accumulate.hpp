@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 
 #include "gpu/frame_plan/frame_plan.hpp"
@@ -26,7 +27,9 @@ inline constexpr struct AccumulateBuffers {
 /// The mean of every frame's `sample` since the view last changed: linear radiance, and in w the
 /// variance of their luminance (Welford 1962). `traced` is the reference's sample, whose
 /// mean replaces the other where traces_reference().
+/// @param when  frames that need the mean; empty: all do
 gpu::History accumulate(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageRef sample,
+                        const std::function<bool()>& when = {},
                         std::optional<gpu::ImageRef> traced = {});
 
 /// How many samples that is, with this frame's.

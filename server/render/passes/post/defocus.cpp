@@ -31,22 +31,34 @@ Composed defocus(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbu
 
   Composed blurred;
   blurred.hdr = blurred.noisy = plan.image(defocus_buffers.hdr.name, formats::four_floats);
-  std::optional<gpu::ImageRef> noisy, blurred_noisy;
-  if (denoised) {
-    blurred.noisy = plan.image(defocus_buffers.noisy.name, formats::four_floats);
-    noisy = composed.noisy;
-    blurred_noisy = blurred.noisy;
+  const auto gather = [&](const gpu::ShaderBinary& shader, std::optional<gpu::ImageRef> noisy,
+                          std::optional<gpu::ImageRef> blurred_noisy) {
+    plan.pass("defocus.gather", in.program(shader))
+        .bind<kernels::DefocusGatherBindings>({.motion = gbuffer.motion,
+                                               .reach = reach,
+                                               .hdr = composed.hdr,
+                                               .noisy = noisy,
+                                               .blurred = blurred.hdr,
+                                               .blurred_noisy = blurred_noisy})
+        .dispatch(gpu::each_pixel())
+        .host(kernels::defocus_gather, in.constants);
+  };
+  const auto gather_alone = [&] { gather(shaders::defocus_gather, {}, {}); };
+  const auto gather_both = [&] {
+    gather(shaders::defocus_gather_denoised, composed.noisy, blurred.noisy);
+  };
+  if (!denoised) {
+    gather_alone();
+    return blurred;
   }
-  const auto& shader = denoised ? shaders::defocus_gather_denoised : shaders::defocus_gather;
-  plan.pass("defocus.gather", in.program(shader))
-      .bind<kernels::DefocusGatherBindings>({.motion = gbuffer.motion,
-                                             .reach = reach,
-                                             .hdr = composed.hdr,
-                                             .noisy = noisy,
-                                             .blurred = blurred.hdr,
-                                             .blurred_noisy = blurred_noisy})
-      .dispatch(gpu::each_pixel())
-      .host(kernels::defocus_gather, in.constants);
+  blurred.noisy = plan.image(defocus_buffers.noisy.name, formats::four_floats);
+  blurred.makes_noisy = composed.makes_noisy;
+  if (composed.makes_noisy) {
+    plan.only_when(composed.makes_noisy, gather_both, gather_alone);
+    plan.leave_undefined_when_skipped(blurred.noisy);
+  } else {
+    gather_both();
+  }
   return blurred;
 }
 
