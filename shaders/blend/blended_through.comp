@@ -25,8 +25,7 @@ void main() {
   vec3 light = met.rgb;
   if (met.a >= distance_of_misses) {
     vec3 weight = uintBitsToFloat(uvec3(ray.user, ray.padding0, ray.padding1));
-    light = enabled(frame_environment_visible) ? weight * environment_background(ray.direction)
-                                               : vec3(0.0);
+    light = weight * environment_background(ray.direction);
   }
   light = sanitize(light);
   if (leaves != 0u) {

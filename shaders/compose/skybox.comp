@@ -11,5 +11,6 @@ void main() {
   if (outside_frame(pixel)) return;
   // 0 where a surface is: the memory of a new image is undefined.
   bool covered = imageLoad(motion, pixel).w > 0.0;
-  imageStore(background, pixel, vec4(covered ? vec3(0.0) : seen_background(pixel), 1.0));
+  vec3 radiance = covered ? vec3(0.0) : environment_background(-to_eye(pixel));
+  imageStore(background, pixel, vec4(radiance, 1.0));
 }

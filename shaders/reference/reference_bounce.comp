@@ -46,7 +46,7 @@ void enter_medium(inout ReferencePath path, uint medium) {
 bool is_seen(ReferencePath path) { return (path.flags & path_turned) == 0u; }
 
 vec3 environment_at_miss(ReferencePath path, vec3 direction) {
-  if (is_seen(path)) return background(direction);
+  if (is_seen(path)) return environment_background(direction);
   uint lobe = (path.flags & path_specular) != 0u ? frame_environment_specular
                                                  : frame_environment_diffuse;
   if (!enabled(lobe)) return vec3(0.0);

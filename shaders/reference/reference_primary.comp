@@ -63,7 +63,8 @@ void main() {
   vec3 radiance = vec3(0.0);
   ReferencePath path = paths[index];
   if (hit.instance == hit_none) {
-    radiance = path.throughput * background(ray.direction) * ground_factor(ray.origin, ray.direction);
+    radiance = path.throughput * environment_background(ray.direction) *
+               ground_factor(ray.origin, ray.direction);
   } else {
     RayCone cone = RayCone(path.cone_width, path.cone_spread);
     HitSurface s = hit_surface(hit, ray.direction, cone_width(cone, hit.t));

@@ -75,7 +75,7 @@ Composition pixel_composition(ivec2 pixel) {
   float view_z = imageLoad(motion, pixel).w;
   if (view_z <= 0.0) {
     return without_light(has_background != 0u ? imageLoad(background, pixel).rgb
-                                              : seen_background(pixel));
+                                              : environment_background(-to_eye(pixel)));
   }
   Composition terms;
   if (is_unlit(pixel)) {

@@ -19,15 +19,12 @@ vec3 world_of_environment(vec3 direction) {
   return vec3(c * direction.x + s * direction.z, direction.y, c * direction.z - s * direction.x);
 }
 
-/// What the eye sees behind the scene: with the sun's disk, where that is the environment.
+/// What the eye sees behind the scene: with the sun's disk, where that is the environment. Black
+/// where that is hidden.
 vec3 environment_background(vec3 world) {
+  if (!enabled(frame_environment_visible)) return vec3(0.0);
   vec2 uv = equirectangular_uv(environment_direction(world));
   return textureLod(background_map, uv, 0.0).rgb * frame.background_intensity;
-}
-
-/// What the eye sees of it in a pixel without surfaces.
-vec3 seen_background(ivec2 pixel) {
-  return enabled(frame_environment_visible) ? environment_background(-to_eye(pixel)) : vec3(0.0);
 }
 
 /// What lights the scene. Without the sun where it is separated: that is a light of its own.

@@ -57,9 +57,4 @@ bool passes_through(HitSurface s, vec3 behind, ivec2 pixel, uint round, inout ve
   return passes;
 }
 
-/// What the camera sees where nothing is.
-vec3 background(vec3 direction) {
-  return enabled(frame_environment_visible) ? environment_background(direction) : vec3(0.0);
-}
-
 #endif
