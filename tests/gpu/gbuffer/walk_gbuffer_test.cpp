@@ -33,7 +33,7 @@ class RoundsAndWalk {
     const render::FrameInputs& in = with_host_kernels(rig_, false);
     const auto hierarchy = in.tracer.walked(in.structure);
     EXPECT_TRUE(hierarchy.has_value());
-    rounds_ = render::trace_gbuffer(rig_.plan(), in_rounds(in));
+    rounds_ = render::trace_gbuffer(rig_.plan(), with_tracer(in, uncut_));
     if (hierarchy) walked_ = render::walk_gbuffer(rig_.plan(), in, *hierarchy);
   }
 
@@ -84,12 +84,6 @@ class RoundsAndWalk {
   }
 
  private:
-  render::FrameInputs in_rounds(const render::FrameInputs& in) const {
-    return {in.programs,        in.scene,       in.tables,         uncut_,
-            in.structure,       in.constants,   in.half_constants, in.settings,
-            in.clock,           in.moving,      in.scene_motion,   in.all_buffers,
-            in.split_sum_table, in.sheen_table, in.ltc_table,      in.shown};
-  }
   /// The part of all texels, or of those that show something, whose bytes differ.
   double differing_texels(gpu::ImageRef render::GBuffer::*image, bool of_shown) const {
     const auto bytes = [&](gpu::ImageRef of) { return rig_.plan().latest(of).download(); };

@@ -18,14 +18,6 @@ std::shared_ptr<const scene::Scene> cut_ball() {
 
 const render::Section two_planes{.planes = {{0, 0, 1, 0.2f}, {0.6f, 0.8f, 0, 0.5f}}};
 
-/// The inputs with a tracer that cuts rays.
-render::FrameInputs cut_inputs(const render::FrameInputs& in, const tracing::RayTracer& tracer) {
-  return {in.programs,        in.scene,       in.tables,         tracer,
-          in.structure,       in.constants,   in.half_constants, in.settings,
-          in.clock,           in.moving,      in.scene_motion,   in.all_buffers,
-          in.split_sum_table, in.sheen_table, in.ltc_table,      in.shown};
-}
-
 TEST(SectionKernel, CutsAndClosesAsShadersDo) {
   if (!has_host_kernels()) GTEST_SKIP() << "host kernels run on CPU devices only";
   for (const bool orthographic : {false, true}) {
@@ -37,7 +29,7 @@ TEST(SectionKernel, CutsAndClosesAsShadersDo) {
     const render::SectionTracer tracer(rig_inputs.tracer, rig_inputs.programs,
                                        rig.moving().section());
     const auto trace = [&](bool host) {
-      return render::trace_gbuffer(rig.plan(), cut_inputs(with_host_kernels(rig, host), tracer));
+      return render::trace_gbuffer(rig.plan(), with_tracer(with_host_kernels(rig, host), tracer));
     };
     const render::GBuffer shader = trace(false), host = trace(true);
     scene::Camera moved = camera;

@@ -102,6 +102,13 @@ const render::FrameInputs& with_host_kernels(FrameRig& rig, bool host) {
   return rig.inputs();
 }
 
+render::FrameInputs with_tracer(const render::FrameInputs& in, const tracing::RayTracer& tracer) {
+  return {in.programs,        in.scene,       in.tables,         tracer,
+          in.structure,       in.constants,   in.half_constants, in.settings,
+          in.clock,           in.moving,      in.scene_motion,   in.all_buffers,
+          in.split_sum_table, in.sheen_table, in.ltc_table,      in.shown};
+}
+
 ErrorStatistics compare(const render::FloatImage& expected, const render::FloatImage& actual) {
   ErrorStatistics result{};
   for (std::size_t i = 0; i < expected.rgba.size(); ++i) {

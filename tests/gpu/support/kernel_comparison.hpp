@@ -35,6 +35,9 @@ class RandomFrame {
 /// The rig's inputs with host kernels on or off.
 const render::FrameInputs& with_host_kernels(FrameRig& rig, bool host);
 
+/// The inputs with another tracer, which outlives them.
+render::FrameInputs with_tracer(const render::FrameInputs& in, const tracing::RayTracer& tracer);
+
 struct ErrorStatistics {
   double mean;       // of |expected - actual| / (1 + |expected|)
   double max;        // of the same
