@@ -157,6 +157,7 @@ PassBuilder FramePlan::raster(std::string name, const RasterProgram& program) {
 void FramePlan::only_when(const std::function<bool()>& condition,
                           const std::function<void()>& declare,
                           const std::function<void()>& otherwise) {
+  if (!condition) return declare();
   const std::size_t first = passes_.size();
   declare();
   const std::size_t second = passes_.size();

@@ -143,7 +143,7 @@ class FramePlan {
 
   /// Passes that `declare` adds are skipped in frames where `condition` is false, besides what
   /// their own when() says; those that `otherwise` adds where it is true. What both write is
-  /// written in every frame.
+  /// written in every frame. Without a condition `declare` alone counts.
   void only_when(const std::function<bool()>& condition, const std::function<void()>& declare,
                  const std::function<void()>& otherwise = {});
 

@@ -78,6 +78,7 @@ PassBuilder& PassBuilder::draw(std::function<void(VkCommandBuffer, VkPipelineLay
 }
 
 PassBuilder& PassBuilder::when(std::function<bool()> condition) {
+  if (!condition) return *this;
   plan_.passes_[pass_].condition = std::move(condition);
   plan_.passes_[pass_].conditions = {plan_.new_condition()};
   return *this;

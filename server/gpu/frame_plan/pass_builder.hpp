@@ -66,7 +66,7 @@ class PassBuilder {
   PassBuilder& launch(std::uint32_t rays);
   /// Draw calls of a raster pass; the pipeline and shared sets are bound.
   PassBuilder& draw(std::function<void(VkCommandBuffer, VkPipelineLayout)> record);
-  /// The pass is skipped in frames where this is false.
+  /// The pass is skipped in frames where this is false; empty: in none.
   PassBuilder& when(std::function<bool()> condition);
 
   /// In frames that begin while the device works on many others (Queues::is_crowded()), `program`

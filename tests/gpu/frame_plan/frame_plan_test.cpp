@@ -137,6 +137,18 @@ TEST_F(FramePlanTest, SkipsPassesWhoseConditionIsFalse) {
   EXPECT_GE(plan_.timings()[0].milliseconds, 0.0f);
 }
 
+TEST_F(FramePlanTest, WithoutAConditionNoPassIsSkipped) {
+  const auto a = image("a"), b = image("b"), c = image("c");
+  add("always", a, b, 7.0f).when({});
+  plan_.only_when(
+      {}, [&] { add("first", a, c, 3.0f); }, [&] { add("second", a, c, 4.0f); });
+  plan_.compile();
+  plan_.execute();
+  EXPECT_EQ(value(b), 7.0f);
+  EXPECT_EQ(value(c), 3.0f);
+  EXPECT_EQ(plan_.timings().size(), 2u);
+}
+
 TEST_F(FramePlanTest, OnlyWhenSkipsAllPassesDeclaredWithin) {
   const auto a = image("a"), b = image("b"), c = image("c"), d = image("d");
   bool outer = false, own = true;

@@ -145,14 +145,14 @@ class BlendedSurfaces {
   }
 
   void compose_over(gpu::ImageRef frame, const std::function<bool()>& when = {}) {
-    gpu::PassBuilder pass = plan_.pass("blended.over", in_.program(shaders::blended_over));
-    pass.bind<kernels::BlendedOverBindings>({.radiance = to_.radiance,
+    plan_.pass("blended.over", in_.program(shaders::blended_over))
+        .bind<kernels::BlendedOverBindings>({.radiance = to_.radiance,
                                              .specular = to_.specular,
                                              .transmittance = to_.transmittance,
                                              .frame = frame})
         .dispatch(gpu::each_pixel())
-        .host(kernels::blended_over);
-    if (when) pass.when(when);
+        .host(kernels::blended_over)
+        .when(when);
   }
 
  private:

@@ -18,16 +18,14 @@ kernels::RadianceMap SeenBackground::map() const {
 gpu::ImageRef draw_skybox(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbuffer,
                           const std::function<bool()>& when) {
   const auto background = plan.image(skybox_buffers.radiance.name, VK_FORMAT_R32G32B32A32_SFLOAT);
-  gpu::PassBuilder drawing = plan.pass("skybox", in.program(shaders::skybox));
-  drawing.bind<kernels::SkyboxBindings>({.motion = gbuffer.motion, .background = background})
+  plan.pass("skybox", in.program(shaders::skybox))
+      .bind<kernels::SkyboxBindings>({.motion = gbuffer.motion, .background = background})
       .dispatch(gpu::each_pixel())
       .host([in, seen = SeenBackground(in)](const kernels::SkyboxJob::Pass& pass) {
         kernels::skybox({pass, in.constants, seen.map()});
-      });
-  if (when) {
-    drawing.when(when);
-    plan.ignore_when_skipped(background);  // then compose() looks up what is seen
-  }
+      })
+      .when(when);
+  plan.ignore_when_skipped(background);  // then compose() looks up what is seen
   return background;
 }
 

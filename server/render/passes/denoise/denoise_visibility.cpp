@@ -109,13 +109,13 @@ gpu::ImageRef combine_visibility(gpu::FramePlan& plan, const FrameInputs& in, gp
   const bool halves = formats::in_halves(plan);
   const auto noisy = plan.image(denoise_visibility_buffers.noisy.name,
                                 halves ? formats::two_halves : formats::four_floats);
-  gpu::PassBuilder pass = plan.pass("visibility.combine", in.program(shaders::visibility_combine));
-  pass.bind<kernels::CombineBindings>({.shadows = shadows, .ambient = ambient, .visibility = noisy})
+  const bool shadows_alone = !plan.uses_host_kernels() && in.settings.indirect.enabled;
+  plan.pass("visibility.combine", in.program(shaders::visibility_combine))
+      .bind<kernels::CombineBindings>({.shadows = shadows, .ambient = ambient, .visibility = noisy})
       .dispatch(gpu::each_pixel())
-      .host(kernels::visibility_combine);
-  if (plan.uses_host_kernels() || !in.settings.indirect.enabled) return noisy;
-  if (when_read) pass.when(when_read);
-  return shadows;
+      .host(kernels::visibility_combine)
+      .when(shadows_alone ? when_read : std::function<bool()>());
+  return shadows_alone ? shadows : noisy;
 }
 
 gpu::ImageRef denoise_visibility(gpu::FramePlan& plan, const FrameInputs& in,

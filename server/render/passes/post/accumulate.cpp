@@ -18,17 +18,17 @@ gpu::History accumulate(gpu::FramePlan& plan, const FrameInputs& in, gpu::ImageR
                         const std::function<bool()>& when, std::optional<gpu::ImageRef> traced) {
   const auto history = plan.history(accumulate_buffers.mean.name, VK_FORMAT_R32G32B32A32_SFLOAT);
   const auto add = [&](gpu::ImageRef added) {
-    gpu::PassBuilder pass = plan.pass("accumulate", in.program(shaders::accumulate));
-    pass.bind<kernels::AccumulateBindings>(
+    plan.pass("accumulate", in.program(shaders::accumulate))
+        .bind<kernels::AccumulateBindings>(
             {.sample = added, .previous = history.previous, .mean = history.current})
         .constants([in] {
           return kernels::AccumulateConstants{1.0f / static_cast<float>(samples_of_mean(in))};
         })
         .dispatch(gpu::each_pixel())
-        .host(kernels::accumulate);
-    if (when) pass.when(when);
+        .host(kernels::accumulate)
+        .when(when);
   };
-  if (when) plan.leave_undefined_when_skipped(history.current);
+  plan.leave_undefined_when_skipped(history.current);
   if (!traced) {
     add(sample);
     return history;

@@ -53,12 +53,8 @@ Composed defocus(gpu::FramePlan& plan, const FrameInputs& in, const GBuffer& gbu
   }
   blurred.noisy = plan.image(defocus_buffers.noisy.name, formats::four_floats);
   blurred.makes_noisy = composed.makes_noisy;
-  if (composed.makes_noisy) {
-    plan.only_when(composed.makes_noisy, gather_both, gather_alone);
-    plan.leave_undefined_when_skipped(blurred.noisy);
-  } else {
-    gather_both();
-  }
+  plan.only_when(composed.makes_noisy, gather_both, gather_alone);
+  plan.leave_undefined_when_skipped(blurred.noisy);
   return blurred;
 }
 
