@@ -203,7 +203,7 @@ void add_bounds(nlohmann::json& summary, const RecordingTracer& tracer, const sc
         pass["times_embree"] = ms / alone->milliseconds;
       }
     } else if (shaders && host) {
-      if (const auto shader = shaders->table.median_of(name)) {
+      if (const auto shader = shaders->table.median_of_shader(name)) {
         pass["shader_ms"] = *shader;
         pass["shader_times"] = *shader / ms;
       }
@@ -216,11 +216,7 @@ nlohmann::json measure(render::Engine& engine, RecordingTracer& tracer, const sc
                        VkExtent2D extent, const Options& options) {
   const protocol::Settings settings = parse_settings(options);
   std::optional<Run> shaders;
-  if (options.shaders) {
-    engine.parts().host_kernels = false;
-    shaders.emplace(engine, resources, extent, settings);
-    engine.parts().host_kernels = true;
-  }
+  if (options.shaders) shaders.emplace(engine, resources, extent, settings);
   Run run(engine, resources, extent, settings);
   run.renderer.set_draw_scale(options.draw_scale);
   if (options.jpeg > 0) run.renderer.request_jpeg(render::JpegRequest{options.jpeg});
@@ -228,11 +224,13 @@ nlohmann::json measure(render::Engine& engine, RecordingTracer& tracer, const sc
   for (int i = 0; i < options.warm_up + options.frames; ++i) {
     for (Run* each : {&run, shaders ? &*shaders : nullptr}) {
       if (!each) continue;
+      engine.parts().host_kernels = each == &run;  // read when a renderer makes its passes
       each->renderer.set_camera(options.still ? camera : swung(camera, i));
       const auto frame = options.overlap ? each->next_overlapping() : each->renderer.render();
       if (i >= options.warm_up && frame) each->table.add(*frame);
     }
   }
+  engine.parts().host_kernels = true;
   run.finish_all();
   tracer.set_recording(true);
   run.renderer.set_camera(options.still ? camera : swung(camera, options.warm_up + options.frames));

@@ -29,10 +29,10 @@ void Table::add(const render::Frame& frame) {
   }
 }
 
-std::optional<double> Table::median_of(const std::string& name) const {
-  const auto found = times_.find(name);
-  if (found == times_.end()) return std::nullopt;
-  return median(found->second);
+std::optional<double> Table::median_of_shader(const std::string& name) const {
+  const auto pass = std::ranges::find(order_, name, &Pass::name);
+  if (pass == order_.end() || pass->kind != protocol::PassKind::device) return std::nullopt;
+  return median(times_.at(name));
 }
 
 nlohmann::json Table::summary(const std::vector<render::PassWork>& work,

@@ -16,8 +16,8 @@ class Table {
  public:
   void add(const render::Frame& frame);
 
-  /// Median milliseconds of the pass `name`; nullopt where it never ran.
-  std::optional<double> median_of(const std::string& name) const;
+  /// Median milliseconds of the pass `name`; nullopt where it never ran as a shader.
+  std::optional<double> median_of_shader(const std::string& name) const;
 
   /// A JSON object: frame_ms (median, minimum, maximum), and per pass median time, ns per pixel,
   /// millions of rays per second, bytes of images, and time relative to copying as many bytes.
