@@ -13,17 +13,18 @@ layout(local_size_x = 8, local_size_y = 8) in;
 #include "lib/denoise/rectification.glsl"
 #include "lib/denoise/reprojection.glsl"
 
-layout(set = 1, binding = 0, rgba32f) readonly uniform image2D raw;  // radiance, hit distance
-layout(set = 1, binding = 1, rgba32f) readonly uniform image2D guide;
-layout(set = 1, binding = 2, r32ui) readonly uniform uimage2D instance;
-layout(set = 1, binding = 3, rgba32f) readonly uniform image2D reprojection;
-layout(set = 1, binding = 4, rgba32f) readonly uniform image2D previous_normals;
-layout(set = 1, binding = 5, rgba8) readonly uniform image2D previous_surface;
-layout(set = 1, binding = 6, r32ui) readonly uniform uimage2D previous_instance;
-layout(set = 1, binding = 7, rgba16f) readonly uniform image2D previous_signal;
-layout(set = 1, binding = 8, rgba16f) readonly uniform image2D previous_history;
-layout(set = 1, binding = 9, rgba16f) readonly uniform image2D previous_fast;
-layout(set = 1, binding = 10, rgba32f) readonly uniform image2D percentiles;  // of tiles, or anything
+// Textures, whose unit turns 16 bits into floats.
+layout(set = 1, binding = 0) uniform sampler2D raw;  // radiance, hit distance
+layout(set = 1, binding = 1) uniform sampler2D guide;
+layout(set = 1, binding = 2) uniform usampler2D instance;
+layout(set = 1, binding = 3) uniform sampler2D reprojection;
+layout(set = 1, binding = 4) uniform sampler2D previous_normals;
+layout(set = 1, binding = 5) uniform sampler2D previous_surface;
+layout(set = 1, binding = 6) uniform usampler2D previous_instance;
+layout(set = 1, binding = 7) uniform sampler2D previous_signal;
+layout(set = 1, binding = 8) uniform sampler2D previous_history;
+layout(set = 1, binding = 9) uniform sampler2D previous_fast;
+layout(set = 1, binding = 10) uniform sampler2D percentiles;  // of tiles, or anything
 layout(set = 1, binding = 11, rgba32f) writeonly uniform image2D signal;   // radiance, variance
 layout(set = 1, binding = 12, rgba16f) writeonly uniform image2D kept;     // radiance, distance
 // Frames, how far rectification moved the mean, mean and deviation of the brightness of samples.
@@ -51,7 +52,7 @@ struct Surface {
 };
 
 vec4 sample_at(ivec2 pixel) {
-  vec4 texel = imageLoad(raw, pixel);
+  vec4 texel = texelFetch(raw, pixel, 0);
   return vec4(sanitize(texel.rgb), sanitize(texel.w));
 }
 
@@ -80,9 +81,9 @@ void read_surroundings() {
   for (int i = int(gl_LocalInvocationIndex); i < side * side; i += group_side * group_side) {
     ivec2 tap = corner + ivec2(i % side, i / side);
     bool shown = inside(tap, ivec2(frame.extent));
-    distances[i] = shown ? abs(sanitize(imageLoad(raw, tap).w)) : 0.0;
-    instances[i] = shown ? imageLoad(instance, tap).r : 0u;
-    guides[i] = shown ? imageLoad(guide, tap) : vec4(0.0);
+    distances[i] = shown ? abs(sanitize(texelFetch(raw, tap, 0).w)) : 0.0;
+    instances[i] = shown ? texelFetch(instance, tap, 0).r : 0u;
+    guides[i] = shown ? texelFetch(guide, tap, 0) : vec4(0.0);
   }
   barrier();
 }
@@ -100,7 +101,7 @@ vec3 fetch_history_bicubic(HistoryTaps taps) {
       float weight = across[x] * down[y];
       if (weight == 0.0 || is_cubic_corner(x, y)) continue;
       ivec2 tap = clamp(taps.base + ivec2(x, y) - 1, ivec2(0), ivec2(frame.extent) - 1);
-      vec3 value = imageLoad(previous_signal, tap).rgb;
+      vec3 value = texelFetch(previous_signal, tap, 0).rgb;
       sum += weight * value;
       if (x % 3 == 0 || y % 3 == 0) continue;
       low = min(low, value);
@@ -119,11 +120,11 @@ HistorySample fetch_history(HistoryTaps taps) {
     float weight = taps.weights[i];
     if (weight <= 0.0) continue;
     ivec2 tap = taps.base + tap_offset(i);
-    vec4 state = imageLoad(previous_history, tap);
-    if (!bicubic) history.radiance += weight * imageLoad(previous_signal, tap).rgb;
+    vec4 state = texelFetch(previous_history, tap, 0);
+    if (!bicubic) history.radiance += weight * texelFetch(previous_signal, tap, 0).rgb;
     history.frames += weight * state.x;
     history.moments += weight * vec2(state.z, dot(state.zw, state.zw));
-    if (!gradient) history.fast += weight * imageLoad(previous_fast, tap).rgb;
+    if (!gradient) history.fast += weight * texelFetch(previous_fast, tap, 0).rgb;
   }
   if (bicubic) history.radiance = fetch_history_bicubic(taps);
   return history;
@@ -196,9 +197,9 @@ vec2 virtual_motion(Surface s, vec3 position, float curvature) {
 /// depth of what it reflects. Pixels that show none have no instance.
 bool shows_reflector(ivec2 pixel, Surface s, float normal_change) {
   if (!inside(pixel, ivec2(frame.extent))) return false;
-  if (imageLoad(previous_instance, pixel).r != instances[place_of(ivec2(0))]) return false;
-  vec3 normal = octahedral_decode(imageLoad(previous_normals, pixel).xy);
-  float roughness = imageLoad(previous_surface, pixel).r;
+  if (texelFetch(previous_instance, pixel, 0).r != instances[place_of(ivec2(0))]) return false;
+  vec3 normal = octahedral_decode(texelFetch(previous_normals, pixel, 0).xy);
+  float roughness = texelFetch(previous_surface, pixel, 0).r;
   return same_reflector(dot(normal, s.normal), s.roughness, roughness, normal_change);
 }
 
@@ -218,7 +219,8 @@ Window window_about(ivec2 pixel) {
   for (int y = -constants.radius; y <= constants.radius; ++y) {
     for (int x = -constants.radius; x <= constants.radius; ++x) {
       ivec2 tap = pixel + ivec2(x, y);
-      if (!inside(tap, ivec2(frame.extent)) || guide_is_background(imageLoad(guide, tap))) continue;
+      if (!inside(tap, ivec2(frame.extent))) continue;
+      if (guide_is_background(texelFetch(guide, tap, 0))) continue;
       add(window, to_ycocg(sample_at(tap).rgb));
     }
   }
@@ -238,7 +240,7 @@ vec3 rectify(ivec2 pixel, vec3 old) {
 /// The history of the better candidate.
 HistorySample reprojected_history(Surface s) {
   if ((constants.flags & temporal_history_valid) == 0u) return no_history();
-  vec4 map = imageLoad(reprojection, s.pixel);
+  vec4 map = texelFetch(reprojection, s.pixel, 0);
   HistoryTaps own = valid_taps(bilinear_taps(map.xy), uint(map.z));
   if (!follows_reflections()) return fetch_history(own);
   vec3 position = world_position(s.pixel, s.view_z);
@@ -275,7 +277,7 @@ void main() {
   ivec2 pixel = ivec2(gl_GlobalInvocationID.xy);
   if (follows_reflections()) read_surroundings();
   if (outside_frame(pixel)) return;
-  vec4 guided = imageLoad(guide, pixel);
+  vec4 guided = texelFetch(guide, pixel, 0);
   vec4 raw_sample = sample_at(pixel);
   vec3 now = raw_sample.rgb;
   // The history counts what was sampled: without a sample it stays as it is.

@@ -1,6 +1,5 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#define MOMENTS_FORMAT rgba16f
 #include "lib/denoise/specular_signal.glsl"
 #include "lib/denoise/spatial_variance.glsl"
 

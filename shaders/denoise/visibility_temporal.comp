@@ -17,7 +17,7 @@ layout(set = 1, binding = 3, rgba16) readonly uniform image2D previous_signal;
 layout(set = 1, binding = 4, rgba16) readonly uniform image2D previous_moments;
 layout(set = 1, binding = 5, rgba16f) readonly uniform image2D previous_history;
 layout(set = 1, binding = 6, rg16f) readonly uniform image2D previous_fast;
-layout(set = 1, binding = 7, rgba32f) readonly uniform image2D percentiles;  // of tiles, or anything
+layout(set = 1, binding = 7) uniform sampler2D percentiles;  // of tiles, or anything
 layout(set = 1, binding = 8, rgba32f) writeonly uniform image2D signal;   // value xy, variance zw
 layout(set = 1, binding = 9, rgba16) writeonly uniform image2D kept;     // the same
 layout(set = 1, binding = 10, rgba16) writeonly uniform image2D moments;  // first xy, second zw

@@ -1,6 +1,5 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
-#define MOMENTS_FORMAT rgba16
 #include "lib/denoise/visibility_signal.glsl"
 #include "lib/denoise/spatial_variance.glsl"
 #include "lib/denoise/history_texels.glsl"

@@ -8,9 +8,10 @@
 namespace heliograph::gpu {
 namespace {
 
+/// Passes fetch texels of images, of integers too, which have no linear filter.
 Sampler make_default_sampler(const Device& device) {
   VkSamplerCreateInfo info{VK_STRUCTURE_TYPE_SAMPLER_CREATE_INFO};
-  info.magFilter = info.minFilter = VK_FILTER_LINEAR;
+  info.magFilter = info.minFilter = VK_FILTER_NEAREST;
   info.addressModeU = info.addressModeV = info.addressModeW = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
   return Sampler(device, info);
 }

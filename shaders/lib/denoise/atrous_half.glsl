@@ -4,16 +4,16 @@
 #include "lib/denoise/half_formats.glsl"
 
 layout(local_size_x = 16, local_size_y = 16) in;
-layout(set = 1, binding = 0, rg32ui) readonly uniform uimage2D guide;
-layout(set = 1, binding = 1, rg16f) readonly uniform image2D depth_slope;  // in parts of view Z
-layout(set = 1, binding = 2, SIGNAL_FORMAT) readonly uniform image2D signal;
+layout(set = 1, binding = 0) uniform usampler2D guide;
+layout(set = 1, binding = 1) uniform sampler2D depth_slope;  // in parts of view Z
+layout(set = 1, binding = 2) uniform sampler2D signal;
 layout(set = 1, binding = 3, FILTERED_FORMAT) writeonly uniform image2D filtered;
 layout(push_constant) uniform Constants { AtrousConstants constants; };
 
 #define Value vec4
 #define Channels vec2
 
-Value load(ivec2 texel) { return imageLoad(signal, texel); }
+Value load(ivec2 texel) { return texelFetch(signal, texel, 0); }
 void save(ivec2 texel, Value value) { imageStore(filtered, texel, value); }
 Value weighed(Value value, Channels weight) { return value * weighing(weight); }
 Value plus(Value a, Value b) { return a + b; }

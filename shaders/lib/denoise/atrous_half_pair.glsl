@@ -7,10 +7,10 @@
 #include "lib/math/luminance.glsl"
 
 layout(local_size_x = 16, local_size_y = 16) in;
-layout(set = 1, binding = 0, rg32ui) readonly uniform uimage2D guide;
-layout(set = 1, binding = 1, rg16f) readonly uniform image2D depth_slope;  // in parts of view Z
-layout(set = 1, binding = 2, SIGNAL_FORMAT) readonly uniform image2D visibility;
-layout(set = 1, binding = 3, SIGNAL_FORMAT) readonly uniform image2D reflection;
+layout(set = 1, binding = 0) uniform usampler2D guide;
+layout(set = 1, binding = 1) uniform sampler2D depth_slope;  // in parts of view Z
+layout(set = 1, binding = 2) uniform sampler2D visibility;
+layout(set = 1, binding = 3) uniform sampler2D reflection;
 layout(set = 1, binding = 4, FILTERED_FORMAT) writeonly uniform image2D filtered_visibility;
 layout(set = 1, binding = 5, FILTERED_FORMAT) writeonly uniform image2D filtered_reflection;
 layout(push_constant) uniform Constants {
@@ -45,7 +45,7 @@ Value plus(Value a, Value b) {
 }
 
 Value load(ivec2 texel) {
-  return Value(imageLoad(visibility, texel), imageLoad(reflection, texel));
+  return Value(texelFetch(visibility, texel, 0), texelFetch(reflection, texel, 0));
 }
 void save(ivec2 texel, Value value) {
   imageStore(filtered_visibility, texel, value.visibility);

@@ -3,8 +3,9 @@
 // read once. Keeping taps of both halves in shared memory took longer, since neighbouring groups
 // then filter the same texels. So that taps read less, the guide is packed, and the signal holds
 // 16 bits a channel between the passes of a blur. These passes are bound by instructions: what a
-// tap need not work out is worked out once a pixel. What a `Value` is, what `Channels` of it have
-// weights of their own, and the images come from atrous_half.glsl or atrous_half_pair.glsl.
+// tap need not work out is worked out once a pixel, and what is read is bound as textures, whose
+// unit turns 16 bits into floats. What a `Value` is, what `Channels` of it have weights of their
+// own, and the images come from atrous_half.glsl or atrous_half_pair.glsl.
 #include "lib/denoise/packed_guide.glsl"
 
 const int group_side = 16;
@@ -144,7 +145,7 @@ vec2 surface_bits(Line line, uvec2 guide_q, float distance, float exponent) {
 void add_tap(Line line, int number, float exponent, inout Value sum, inout Channels total) {
   if (uint(line.at + number * line.step) >= uint(line.end)) return;
   ivec2 tap = line.middle + number * line.stride;
-  uvec2 guide_q = imageLoad(guide, tap).xy;
+  uvec2 guide_q = texelFetch(guide, tap, 0).xy;
   if (is_background(guide_q)) return;
   Value texel = load(tap);
   vec2 bits = surface_bits(line, guide_q, float(number) * float(line.step) + line.shift, exponent);
@@ -178,12 +179,12 @@ void main() {
     variance = smoothed();
   }
   if (outside) return;
-  Guide p = unpack_guide(imageLoad(guide, pixel).xy);
+  Guide p = unpack_guide(texelFetch(guide, pixel, 0).xy);
   if (all_left(p)) {
     store(pixel, value);
     return;
   }
-  vec2 slope = unpack_slope(imageLoad(depth_slope, pixel), p.view_z);
+  vec2 slope = unpack_slope(texelFetch(depth_slope, pixel, 0), p.view_z);
   Line line = line_of(center_at(constants, pixel, p, slope), value, variance, extent);
   store(pixel, where_left(p, value, filtered_value(line, value)));
 }

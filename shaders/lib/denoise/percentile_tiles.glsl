@@ -11,7 +11,7 @@ vec4 percentiles_at(ivec2 pixel) {
     ivec2 offset = ivec2(i & 1, i >> 1);
     vec2 weight = mix(1.0 - f, f, vec2(offset));
     ivec2 tile = clamp(corner + offset, ivec2(0), last);
-    sum += weight.x * weight.y * imageLoad(percentiles, tile);
+    sum += weight.x * weight.y * texelFetch(percentiles, tile, 0);
   }
   return sum;
 }

@@ -17,18 +17,18 @@ const float enough_neighbours = 8.0;  // the pixel itself counts as one
 const float nearby_depth = 0.02;      // of the distance
 
 layout(local_size_x = 16, local_size_y = 16) in;
-layout(set = 1, binding = 0, rgba32f) readonly uniform image2D guide;
-layout(set = 1, binding = 1, rg32f) readonly uniform image2D depth_slope;
-layout(set = 1, binding = 2, MOMENTS_FORMAT) readonly uniform image2D moments;
-layout(set = 1, binding = 3, rgba16f) readonly uniform image2D history;
+layout(set = 1, binding = 0) uniform sampler2D guide;
+layout(set = 1, binding = 1) uniform sampler2D depth_slope;
+layout(set = 1, binding = 2) uniform sampler2D moments;
+layout(set = 1, binding = 3) uniform sampler2D history;
 layout(set = 1, binding = 4, rgba32f) uniform image2D signal;
 layout(push_constant) uniform Constants { TemporalConstants constants; };
 
 const int radius = 3;
 
 bool has_short_history(ivec2 pixel) {
-  if (outside_frame(pixel) || guide_is_background(imageLoad(guide, pixel))) return false;
-  vec2 frames = frames_of(imageLoad(history, pixel));
+  if (outside_frame(pixel) || guide_is_background(texelFetch(guide, pixel, 0))) return false;
+  vec2 frames = frames_of(texelFetch(history, pixel, 0));
   return min(frames.x, frames.y) < constants.spatial_variance_frames;
 }
 
@@ -37,9 +37,9 @@ void main() {
   gather_pixel(has_short_history(own), own);
   if (!has_gathered_pixel()) return;
   ivec2 pixel = gathered_pixel();
-  Guide here = decode_guide(imageLoad(guide, pixel));
-  vec2 frames = frames_of(imageLoad(history, pixel));
-  vec2 slope = imageLoad(depth_slope, pixel).xy;
+  Guide here = decode_guide(texelFetch(guide, pixel, 0));
+  vec2 frames = frames_of(texelFetch(history, pixel, 0));
+  vec2 slope = texelFetch(depth_slope, pixel, 0).xy;
   float curve = enabled(frame_orthographic) ? 0.0 : 1.0 / max(here.view_z, 1e-20);
   float footprint = pixel_footprint(here.view_z);
   vec4 sum = vec4(0.0), loose_sum = vec4(0.0);
@@ -48,11 +48,11 @@ void main() {
     for (int x = -radius; x <= radius; ++x) {
       ivec2 tap = pixel + ivec2(x, y);
       if (!inside(tap, ivec2(frame.extent))) continue;
-      vec4 guide_q = imageLoad(guide, tap);
+      vec4 guide_q = texelFetch(guide, tap, 0);
       if (guide_is_background(guide_q)) continue;
       Guide there = decode_guide(guide_q);
       vec2 offset = vec2(x, y);
-      vec4 moments_there = moments_of(imageLoad(moments, tap));
+      vec4 moments_there = moments_of(texelFetch(moments, tap, 0));
       float cosine = dot(here.normal, there.normal);
       float off_plane = plane_distance(here.view_z, slope, curve, there.view_z, offset);
       float weight =
