@@ -33,6 +33,11 @@ bool is_image(VkDescriptorType type) {
          type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 }
 
+bool has_integers(VkFormat format) {
+  return format == VK_FORMAT_R32_UINT || format == VK_FORMAT_R32G32_UINT ||
+         format == VK_FORMAT_R32G32B32A32_UINT;
+}
+
 bool is_packed(VkFormat format) {
   return format == VK_FORMAT_R32G32B32A32_UINT || format == VK_FORMAT_R32G32_UINT;
 }
@@ -47,6 +52,11 @@ std::string mismatch(const ShaderBinding& binding, const Image* image, const std
   if (binding.type == VK_DESCRIPTOR_TYPE_STORAGE_IMAGE && binding.format != image->desc().format) {
     return std::string("has format ") + format_name(binding.format) + ", given \"" + given +
            "\" of format " + format_name(image->desc().format);
+  }
+  if (binding.type == VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER &&
+      binding.integers != has_integers(image->desc().format)) {
+    return std::string("reads ") + (binding.integers ? "integers" : "floats") + ", given \"" +
+           given + "\" of format " + format_name(image->desc().format);
   }
   if (binding.writes && !writes) {
     return "may be written by the shader, but \"" + given + "\" is declared as only read";

@@ -61,13 +61,12 @@ VkDescriptorType sampled_type(spvc_compiler compiler, const spvc_reflected_resou
              : VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
 }
 
-/// The format of the view a texel buffer is bound through: four floats, or one uint.
-VkFormat texel_format(spvc_compiler compiler, const spvc_reflected_resource& resource) {
+/// Whether texels of a sampled image or a texel buffer are integers.
+bool has_integers(spvc_compiler compiler, const spvc_reflected_resource& resource) {
   const auto image = spvc_compiler_get_type_handle(compiler, resource.base_type_id);
   const auto texel =
       spvc_compiler_get_type_handle(compiler, spvc_type_get_image_sampled_type(image));
-  return spvc_type_get_basetype(texel) == SPVC_BASETYPE_FP32 ? VK_FORMAT_R32G32B32A32_SFLOAT
-                                                             : VK_FORMAT_R32_UINT;
+  return spvc_type_get_basetype(texel) != SPVC_BASETYPE_FP32;
 }
 
 class Reflector {
@@ -133,7 +132,11 @@ class Reflector {
         binding.type = sampled_type(compiler_, resource);
       }
       if (binding.type == VK_DESCRIPTOR_TYPE_UNIFORM_TEXEL_BUFFER) {
-        binding.format = texel_format(compiler_, resource);
+        // Of the view it is bound through.
+        binding.format =
+            has_integers(compiler_, resource) ? VK_FORMAT_R32_UINT : VK_FORMAT_R32G32B32A32_SFLOAT;
+      } else if (kind == SPVC_RESOURCE_TYPE_SAMPLED_IMAGE) {
+        binding.integers = has_integers(compiler_, resource);
       }
       const bool block = kind == SPVC_RESOURCE_TYPE_STORAGE_BUFFER;
       const bool writable = block || kind == SPVC_RESOURCE_TYPE_STORAGE_IMAGE;
@@ -165,7 +168,8 @@ class Reflector {
 
 bool same_interface(const ShaderBinding& a, const ShaderBinding& b) {
   return a.set == b.set && a.binding == b.binding && a.type == b.type && a.count == b.count &&
-         a.reads == b.reads && a.writes == b.writes && a.format == b.format;
+         a.reads == b.reads && a.writes == b.writes && a.format == b.format &&
+         a.integers == b.integers;
 }
 
 }  // namespace

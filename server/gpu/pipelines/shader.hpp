@@ -26,6 +26,7 @@ struct ShaderBinding {
   bool reads = true;                      // not writeonly
   bool writes = true;                     // not readonly
   VkFormat format = VK_FORMAT_UNDEFINED;  // of a storage image
+  bool integers = false;                  // what is read of a sampled image
 };
 
 struct Reflection {

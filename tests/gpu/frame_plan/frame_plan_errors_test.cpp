@@ -12,6 +12,12 @@ TEST_F(FramePlanTest, ErrorNamesWrongFormat) {
   expect_complaint({"\"brighten\"", "binding 0", "\"given\"", "\"vectors\""});
 }
 
+TEST_F(FramePlanTest, ErrorNamesFloatsThatAreFetchedAsIntegers) {
+  const ComputeProgram fetch(device_, test::shaders::fetch_integers);
+  plan_.pass("count", fetch).read(image("floats")).write(image("b")).dispatch({1, 1});
+  expect_complaint({"\"count\"", "binding 0", "\"given\"", "integers", "\"floats\"", "r32f"});
+}
+
 TEST_F(FramePlanTest, ErrorNamesMissingBinding) {
   plan_.pass("brighten", program_).read(image("a")).constants(1.0f).dispatch({1, 1});
   expect_complaint({"\"brighten\"", "binding 1", "\"sum\""});
