@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <regex>
+#include <stdexcept>
 
 #include "gpu/frame_plan/frame_size.hpp"
 #include "protocol/settings/presets.hpp"
@@ -187,6 +188,7 @@ std::optional<double> bare_loop_milliseconds(const std::string& pass, VkExtent2D
 void add_bounds(nlohmann::json& summary, const RecordingTracer& tracer, const scene::Scene& scene,
                 VkExtent2D extent, const std::optional<Run>& shaders) {
   const EmbreeAlone embree(scene);
+  bool has_kernels = false, has_shaders = false;
   for (auto& pass : summary.at("passes")) {
     const auto name = pass.at("name").get<std::string>();
     const double ms = pass.at("ms").get<double>();
@@ -203,12 +205,15 @@ void add_bounds(nlohmann::json& summary, const RecordingTracer& tracer, const sc
         pass["times_embree"] = ms / alone->milliseconds;
       }
     } else if (shaders && host) {
+      has_kernels = true;
       if (const auto shader = shaders->table.median_of_shader(name)) {
         pass["shader_ms"] = *shader;
         pass["shader_times"] = *shader / ms;
+        has_shaders = true;
       }
     }
   }
+  if (has_kernels && !has_shaders) throw std::runtime_error("--shaders: no shader was timed");
 }
 
 nlohmann::json measure(render::Engine& engine, RecordingTracer& tracer, const scene::Scene& scene,
@@ -218,7 +223,9 @@ nlohmann::json measure(render::Engine& engine, RecordingTracer& tracer, const sc
   std::optional<Run> shaders;
   if (options.shaders) shaders.emplace(engine, resources, extent, settings);
   Run run(engine, resources, extent, settings);
-  run.renderer.set_draw_scale(options.draw_scale);
+  for (Run* each : {&run, shaders ? &*shaders : nullptr}) {
+    if (each) each->renderer.set_draw_scale(options.draw_scale);
+  }
   if (options.jpeg > 0) run.renderer.request_jpeg(render::JpegRequest{options.jpeg});
   const scene::Camera camera = first_camera(scene, extent);
   for (int i = 0; i < options.warm_up + options.frames; ++i) {
